@@ -1,0 +1,37 @@
+/* The two lobes as products of axes: what sample, pdf, invert and the mixture of one direction have in common. */
+#ifndef HAIRLUT_LOBES_H
+#define HAIRLUT_LOBES_H
+
+#include "angle.h"
+#include "axis.h"
+
+static const float hairlut_uniform_azimuth = 0.159154943f; /* 1 / (2 pi): multiple scattering has no azimuth */
+
+/* NaN anywhere, or an infinite azimuth: the density is 0. */
+static inline int hairlut_known(float theta_r, float phi_r, float a, float b)
+{
+    return theta_r == theta_r && hairlut_is_finite(phi_r) && a == a && b == b;
+}
+
+/* The azimuth that the table direct_phi holds, in [0, 2 pi). */
+static inline float hairlut_relative_azimuth(const hairlut_model *model, float phi_r, float phi_i)
+{
+    const float r = hairlut_wrap(phi_r, -hairlut_pi);
+    const float i = hairlut_wrap(phi_i, -hairlut_pi);
+    return hairlut_wrap(model->azimuth == HAIRLUT_AZIMUTH_SUM ? i + r : i - r, 0.0f);
+}
+
+/* phi_i in [-pi, pi) from the azimuth in the table. */
+static inline float hairlut_incident_azimuth(const hairlut_model *model, float phi_r, float phi)
+{
+    const float r = hairlut_wrap(phi_r, -hairlut_pi);
+    return hairlut_wrap(model->azimuth == HAIRLUT_AZIMUTH_SUM ? phi - r : phi + r, -hairlut_pi);
+}
+
+static inline hairlut_sample hairlut_finish(float theta_i, float phi_i, float pdf)
+{
+    const hairlut_sample s = {theta_i, phi_i, pdf, hairlut_pdf_to_solid_angle(pdf, theta_i)};
+    return s;
+}
+
+#endif

@@ -1,0 +1,52 @@
+/* One direction at a time: sample, pdf and invert of both lobes. */
+#include "lobes.h"
+
+hairlut_sample hairlut_sample_direct(const hairlut_model *model, float theta_r, float phi_r, float u_theta, float u_phi)
+{
+    const hairlut_draw theta = hairlut_axis_sample(&model->direct_theta, theta_r, u_theta);
+    const hairlut_draw phi = hairlut_axis_sample(&model->direct_phi, theta_r, u_phi);
+    const float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * phi.pdf : 0.0f;
+    return hairlut_finish(theta.x, hairlut_incident_azimuth(model, phi_r, phi.x), pdf);
+}
+
+hairlut_sample hairlut_sample_multiple(const hairlut_model *model, float theta_r, float phi_r, float u_theta, float u_phi)
+{
+    const hairlut_draw theta = hairlut_axis_sample(&model->multiple_theta, theta_r, u_theta);
+    const float phi = hairlut_wrap(hairlut_two_pi * hairlut_clamp(u_phi, 0.0f, 1.0f) - hairlut_pi, -hairlut_pi);
+    const float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_uniform_azimuth : 0.0f;
+    return hairlut_finish(theta.x, phi, pdf);
+}
+
+float hairlut_pdf_direct(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
+        return 0.0f;
+    const float phi = hairlut_relative_azimuth(model, phi_r, phi_i);
+    return hairlut_axis_pdf(&model->direct_theta, theta_r, theta_i) * hairlut_axis_pdf(&model->direct_phi, theta_r, phi);
+}
+
+float hairlut_pdf_multiple(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
+        return 0.0f;
+    return hairlut_axis_pdf(&model->multiple_theta, theta_r, theta_i) * hairlut_uniform_azimuth;
+}
+
+void hairlut_invert_direct(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i, float u[2])
+{
+    u[0] = hairlut_axis_invert(&model->direct_theta, theta_r, theta_i);
+    u[1] = hairlut_axis_invert(&model->direct_phi, theta_r, hairlut_relative_azimuth(model, phi_r, phi_i));
+}
+
+void hairlut_invert_multiple(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i,
+                             float u[2])
+{
+    (void)phi_r;
+    u[0] = hairlut_axis_invert(&model->multiple_theta, theta_r, theta_i);
+    u[1] = (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_uniform_azimuth;
+}
+
+float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)
+{
+    return pdf_angle / hairlut_cos(theta_i);
+}

@@ -1,0 +1,57 @@
+# hairlut: `make` sets up, bakes, builds and draws samples; `make test` runs everything that must hold.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(CURDIR)/$(VENV)/bin
+HAIRLUT := $(BIN)/hairlut
+BUILD := build
+MODELS := luts/printed luts/fitted
+LIBRARY := $(BUILD)/runtime
+
+.PHONY: all help setup extras bake build demo test lint bench report render fuzz clean
+
+all: demo
+
+help:
+	@echo "make          set up $(VENV), bake luts/, build the C library, print samples drawn with it"
+	@echo "make test     every test; what a missing package keeps from running is listed as skipped"
+	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
+	@echo "make bench    time the C library and its rivals, as ratios"
+	@echo "make report   regenerate luts/report/: speed against error, hard cases, the study"
+	@echo "make render   render the hair scene with the Mitsuba plugin (about 10 minutes)"
+	@echo "make fuzz     60 seconds of coverage-guided fuzzing of the loader and the memory path"
+	@echo "make clean    remove $(VENV) and $(BUILD)/"
+
+$(VENV)/.ready: precompute/pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "hairlut: $(PYTHON) is older than 3.11: name another with make PYTHON=..."; exit 2; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "hairlut: the venv module is missing: apt-get install python3-venv"; exit 2; }
+	@./runtime/packages.sh base
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e 'precompute[test]'
+	@touch $@
+
+setup: $(VENV)/.ready
+
+extras: setup
+	@./runtime/packages.sh extras
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e 'precompute[test,engine,shaders]'
+
+bake: setup
+	$(HAIRLUT) bake --model printed --out luts
+	$(HAIRLUT) bake --model fitted --out luts
+
+build: setup
+	@$(BIN)/cmake -S runtime -B $(LIBRARY) -G Ninja -DCMAKE_MAKE_PROGRAM=$(BIN)/ninja -DCMAKE_BUILD_TYPE=Release --log-level=WARNING
+	@$(BIN)/cmake --build $(LIBRARY) -- --quiet
+
+demo: bake build
+	@$(LIBRARY)/print_samples $(MODELS)
+
+lint: setup
+	@$(BIN)/ruff check precompute tests runtime
+	@$(BIN)/ruff format --check precompute tests runtime
+
+test: lint build
+	$(BIN)/python -m pytest
+
+clean:
+	rm -rf $(VENV) $(BUILD)

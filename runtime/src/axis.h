@@ -57,6 +57,12 @@ static inline float hairlut_blend(float a, float b, float t)
     return a + t * (b - a);
 }
 
+/* The same for widths: positive for positive a and b at every t, which the form above is not where b is far below a. */
+static inline float hairlut_blend_width(float a, float b, float t)
+{
+    return (1.0f - t) * a + t * b;
+}
+
 /* The blended texel of knot i. */
 static inline float hairlut_texel(const hairlut_rows *rows, int i)
 {
@@ -70,9 +76,9 @@ static inline hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, const hai
     const float *a = rows->a + i;
     const float *b = a + rows->stride;
     const float t = rows->t;
-    const float before = hairlut_blend(a[1] - a[0], b[1] - b[0], t);
-    const float d = hairlut_blend(a[2] - a[1], b[2] - b[1], t);
-    const float after = hairlut_blend(a[3] - a[2], b[3] - b[2], t);
+    const float before = hairlut_blend_width(a[1] - a[0], b[1] - b[0], t);
+    const float d = hairlut_blend_width(a[2] - a[1], b[2] - b[1], t);
+    const float after = hairlut_blend_width(a[3] - a[2], b[3] - b[2], t);
     const float bound = axis->limit * d;
     const hairlut_cell cell = {hairlut_blend(a[1], b[1], t), d, hairlut_clamp(0.25f * (before - after), -bound, bound)};
     return cell;
@@ -135,8 +141,8 @@ static inline float hairlut_axis_u(const hairlut_axis *axis, int i, float f)
 {
     float m = axis->k * hairlut_fold(axis, i, f);
     if (axis->warp == HAIRLUT_WARP_QUARTIC) {
-        const float y = axis->f0 + m;
-        m = y * y * (y * y) - axis->e;
+        const float f0 = axis->f0, y = f0 + m;
+        m *= (y + f0) * (y * y + f0 * f0); /* y^4 - f0^4 without its cancellation */
     }
     m = hairlut_clamp(m, 0.0f, 0.5f);
     return hairlut_from_low(i, f) <= hairlut_from_high(axis, i, f) ? m : 1.0f - m;

@@ -1,13 +1,19 @@
 /* Models from tables in memory: what a table must fulfil, and the padded copy that the kernels read. */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 
+#include "allocator.h"
 #include "internal.h"
-#include "hairlut_version.h"
+#include "message.h"
+#include "warp.h"
 
-enum { MAX_SIDE = 16384 };
+enum { MAX_SIDE = 4096 }; /* 64 MiB a table: a wrong size is refused before it is allocated */
+
+/* The floats next to pi/2 and 2 pi, both just above. */
+static const float half_pi = 1.57079637f;
+static const float two_pi = 6.28318548f;
+
+/* No cell is narrower: the product of two axes' densities and of 1/cos at the pole stays a float. */
+static const float narrowest_cell = 1e-12f;
 
 int hairlut_version(void)
 {
@@ -32,47 +38,39 @@ const char *hairlut_result_string(hairlut_result result)
     case HAIRLUT_ERROR_TABLE:
         return "the texels are not a table of increasing angles within the domain";
     case HAIRLUT_ERROR_UNSUPPORTED:
-        return "this library was built without the EXR loader";
+        return "the file needs a feature that the OpenEXR library in use lacks";
     }
     return "unknown result";
 }
 
-static hairlut_result fail(hairlut_result result, char *message, const char *format, ...)
+/* NaN is in no range */
+static int within(float low, float high, float bound_low, float bound_high)
 {
-    if (message) {
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(message, HAIRLUT_MESSAGE_SIZE, format, arguments);
-        va_end(arguments);
-    }
-    return result;
-}
-
-static int ordered(float low, float high)
-{
-    return isfinite(low) && isfinite(high) && low < high && isfinite(high - low);
+    return low >= bound_low && low < high && high <= bound_high;
 }
 
 static hairlut_result validate_numbers(const hairlut_table *t, char *message)
 {
     if (!t->texels)
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "texels is NULL: expected width*height floats");
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "texels is NULL: expected width*height floats");
     if (t->width < 4 || t->height < 2 || t->width > MAX_SIDE || t->height > MAX_SIDE)
-        return fail(HAIRLUT_ERROR_TABLE, message, "size is %dx%d: expected a width of 4 to %d and a height of 2 to %d",
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "size is %dx%d: expected a width of 4 to %d and a height of 2 to %d",
                     t->width, t->height, (int)MAX_SIDE, (int)MAX_SIDE);
-    if (!ordered(t->theta_r_min, t->theta_r_max))
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "theta_r_min %g, theta_r_max %g: expected finite and increasing",
-                    (double)t->theta_r_min, (double)t->theta_r_max);
-    if (!ordered(t->domain_min, t->domain_max))
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "domain_min %g, domain_max %g: expected finite and increasing",
-                    (double)t->domain_min, (double)t->domain_max);
+    if (!within(t->theta_r_min, t->theta_r_max, -two_pi, two_pi) || t->theta_r_max - t->theta_r_min < 1e-6f)
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
+                            "theta_r_min %g, theta_r_max %g: expected increasing angles from -2 pi to 2 pi",
+                            (double)t->theta_r_min, (double)t->theta_r_max);
+    if (!within(t->domain_min, t->domain_max, -two_pi, two_pi))
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
+                            "domain_min %g, domain_max %g: expected increasing angles from -2 pi to 2 pi",
+                            (double)t->domain_min, (double)t->domain_max);
     if (t->warp != HAIRLUT_WARP_UNIFORM && t->warp != HAIRLUT_WARP_QUARTIC)
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "warp is %d: expected HAIRLUT_WARP_UNIFORM or HAIRLUT_WARP_QUARTIC",
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp is %d: expected HAIRLUT_WARP_UNIFORM or HAIRLUT_WARP_QUARTIC",
                     (int)t->warp);
     if (t->warp == HAIRLUT_WARP_QUARTIC && !(t->warp_e >= 1e-12f && t->warp_e <= 1.0f))
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "warp_e is %g: expected 1e-12 to 1", (double)t->warp_e);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp_e is %g: expected 1e-12 to 1", (double)t->warp_e);
     if (!(t->cell_limit >= 0.0f && t->cell_limit <= 0.95f))
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "cell_limit is %g: expected 0 to 0.95", (double)t->cell_limit);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "cell_limit is %g: expected 0 to 0.95", (double)t->cell_limit);
     return HAIRLUT_OK;
 }
 
@@ -80,19 +78,21 @@ static hairlut_result validate_row(const hairlut_table *t, int j, char *message)
 {
     const float *row = t->texels + (size_t)j * (size_t)t->width;
     for (int i = 0; i + 1 < t->width; ++i)
-        if (!(row[i] < row[i + 1]))
-            return fail(HAIRLUT_ERROR_TABLE, message, "row %d, columns %d and %d: %.9g, %.9g: expected strictly increasing angles",
-                        j, i, i + 1, (double)row[i], (double)row[i + 1]);
-    if (!(row[0] >= t->domain_min && row[t->width - 1] <= t->domain_max))
-        return fail(HAIRLUT_ERROR_TABLE, message, "row %d runs from %.9g to %.9g: expected angles within the domain %.9g to %.9g",
-                    j, (double)row[0], (double)row[t->width - 1], (double)t->domain_min, (double)t->domain_max);
+        if (!(row[i + 1] - row[i] >= narrowest_cell))
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                                "row %d, columns %d and %d: %.9g, %.9g: expected angles that increase by at least %g", j, i,
+                                i + 1, (double)row[i], (double)row[i + 1], (double)narrowest_cell);
+    if (row[0] != t->domain_min || row[t->width - 1] != t->domain_max)
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                            "row %d runs from %.9g to %.9g: expected the whole domain, %.9g to %.9g", j, (double)row[0],
+                            (double)row[t->width - 1], (double)t->domain_min, (double)t->domain_max);
     return HAIRLUT_OK;
 }
 
 hairlut_result hairlut_validate(const hairlut_table *table, char *message)
 {
     if (!table)
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "table is NULL");
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "table is NULL");
     hairlut_result result = validate_numbers(table, message);
     for (int j = 0; result == HAIRLUT_OK && j < table->height; ++j)
         result = validate_row(table, j, message);
@@ -120,10 +120,7 @@ static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *rows
 {
     for (int j = 0; j < t->height; ++j)
         pad_row(rows + (size_t)j * (size_t)(t->width + 2), t->texels + (size_t)j * (size_t)t->width, t->width);
-    const int quartic = t->warp == HAIRLUT_WARP_QUARTIC;
-    const double e = t->warp_e;
-    const double f0 = quartic ? sqrt(sqrt(e)) : 0.0;
-    const double f1 = quartic ? sqrt(sqrt(0.5 + e)) : 0.5;
+    const hairlut_warp_scale scale = hairlut_scale_warp(t->warp, t->warp_e, t->width);
     axis->rows = rows;
     axis->columns = t->width;
     axis->height = t->height;
@@ -132,64 +129,63 @@ static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *rows
     axis->low = t->domain_min;
     axis->high = t->domain_max;
     axis->warp = (int)t->warp;
-    axis->e = quartic ? t->warp_e : 0.0f;
-    axis->f0 = (float)f0;
-    axis->k = (float)(2.0 * (f1 - f0) / (t->width - 1));
+    axis->e = (float)scale.e;
+    axis->f0 = (float)scale.f0;
+    axis->k = (float)scale.k;
     axis->limit = t->cell_limit;
     return rows + padded_floats(t);
 }
 
 static hairlut_result validate_all(const hairlut_model_desc *desc, char *message)
 {
-    const hairlut_table *tables[3] = {&desc->direct_theta, &desc->direct_phi, &desc->multiple_theta};
-    static const char *const names[3] = {"direct_theta", "direct_phi", "multiple_theta"};
+    const struct {
+        const char *name;
+        const hairlut_table *table;
+        float low, high;
+    } parts[3] = {
+        {"direct_theta", &desc->direct_theta, -half_pi, half_pi},
+        {"direct_phi", &desc->direct_phi, 0.0f, two_pi},
+        {"multiple_theta", &desc->multiple_theta, -half_pi, half_pi},
+    };
     char detail[HAIRLUT_MESSAGE_SIZE];
     for (int k = 0; k < 3; ++k) {
-        const hairlut_result result = hairlut_validate(tables[k], detail);
+        const hairlut_table *t = parts[k].table;
+        const hairlut_result result = hairlut_validate(t, detail);
         if (result != HAIRLUT_OK)
-            return fail(result, message, "%s: %.480s", names[k], detail);
+            return hairlut_fail(result, message, "%s: %.480s", parts[k].name, detail);
+        if (!within(t->domain_min, t->domain_max, parts[k].low, parts[k].high))
+            return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "%s: domain %.9g to %.9g: expected to lie within %.9g to %.9g",
+                                parts[k].name, (double)t->domain_min, (double)t->domain_max, (double)parts[k].low,
+                                (double)parts[k].high);
     }
     if (desc->azimuth != HAIRLUT_AZIMUTH_SUM && desc->azimuth != HAIRLUT_AZIMUTH_DIFFERENCE)
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "azimuth is %d: expected HAIRLUT_AZIMUTH_SUM or HAIRLUT_AZIMUTH_DIFFERENCE",
-                    (int)desc->azimuth);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
+                            "azimuth is %d: expected HAIRLUT_AZIMUTH_SUM or HAIRLUT_AZIMUTH_DIFFERENCE", (int)desc->azimuth);
     return HAIRLUT_OK;
-}
-
-static void *default_allocate(void *user, size_t size)
-{
-    (void)user;
-    return malloc(size);
-}
-
-static void default_release(void *user, void *memory)
-{
-    (void)user;
-    free(memory);
 }
 
 hairlut_result hairlut_model_create(const hairlut_model_desc *desc, const hairlut_allocator *allocator,
                                     hairlut_model **out, char *message)
 {
     if (!out)
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "out is NULL");
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "out is NULL");
     *out = NULL;
     if (!desc)
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "desc is NULL");
-    hairlut_allocator a = {default_allocate, default_release, NULL};
-    if (allocator && (allocator->allocate || allocator->release))
-        a = *allocator;
-    if (!a.allocate || !a.release)
-        return fail(HAIRLUT_ERROR_ARGUMENT, message, "allocator: expected both allocate and release, or neither");
-    const hairlut_result result = validate_all(desc, message);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "desc is NULL");
+    hairlut_allocator a;
+    hairlut_result result = hairlut_choose_allocator(allocator, &a, message);
+    if (result == HAIRLUT_OK)
+        result = validate_all(desc, message);
     if (result != HAIRLUT_OK)
         return result;
     const size_t floats = padded_floats(&desc->direct_theta) + padded_floats(&desc->direct_phi)
                           + padded_floats(&desc->multiple_theta);
     /* one block: the struct, whose size is a multiple of a float's, then the rows */
-    hairlut_model *model = a.allocate(a.user, sizeof *model + floats * sizeof(float));
-    if (!model)
-        return fail(HAIRLUT_ERROR_MEMORY, message, "the allocator returned NULL for %zu bytes",
-                    sizeof *model + floats * sizeof(float));
+    void *memory;
+    result = hairlut_allocate(&a, sizeof(hairlut_model) + floats * sizeof(float), &memory, message);
+    if (result != HAIRLUT_OK)
+        return result;
+    hairlut_model *model = memory;
     float *rows = (float *)(model + 1);
     rows = build_axis(&model->direct_theta, &desc->direct_theta, rows);
     rows = build_axis(&model->direct_phi, &desc->direct_phi, rows);

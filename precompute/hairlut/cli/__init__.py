@@ -1,0 +1,49 @@
+"""The command hairlut: one module for each subcommand, with add_parser(subparsers) and run(args) -> exit code."""
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+from .. import __version__
+from ..errors import HairlutError
+
+COMMANDS = ("bake", "inspect", "export")
+OK, CHECK_FAILED, WRONG_USE = 0, 1, 2
+
+EPILOG = """examples:
+  hairlut bake                             bake both models into luts/
+  hairlut inspect luts/fitted/direct_phi.exr
+  hairlut export luts/printed luts/fitted --to c --out tables.c
+exit codes: 0 done, 1 a check failed, 2 wrong use"""
+
+
+def build_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="hairlut",
+        description="Bakes the sampling distributions of a hair shader into small lookup textures.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"hairlut {__version__}")
+    subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
+    for name in COMMANDS:
+        command = importlib.import_module(f".{name}", __name__)
+        command.add_parser(subparsers).set_defaults(run=command.run)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs a command line; the exit code."""
+    args = build_parser().parse_args(argv)
+    try:
+        return args.run(args)
+    except HairlutError as error:
+        print(f"hairlut: {error}", file=sys.stderr)
+        return WRONG_USE
+    except KeyboardInterrupt:
+        print("hairlut: interrupted; no file was left half-written", file=sys.stderr)
+        return 130
+    except BrokenPipeError:  # the reader of our output, such as head, has seen enough
+        sys.stderr.close()
+        return OK

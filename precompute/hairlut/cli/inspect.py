@@ -1,0 +1,73 @@
+"""hairlut inspect: what a file says about itself."""
+
+import argparse
+import json
+from pathlib import Path
+
+import numpy as np
+
+from .. import exr
+from ..table import Table
+
+EXAMPLES = """examples:
+  hairlut inspect luts/fitted/direct_theta.exr
+  hairlut inspect luts/fitted/direct_theta.exr --json | jq .errors"""
+
+
+def add_parser(subparsers) -> argparse.ArgumentParser:
+    parser = subparsers.add_parser(
+        "inspect",
+        help="print a texture's header, size, errors and rows",
+        description="Prints the header of a texture, its measured errors, and for each row the mass of the lobe inside "
+        "its domain, the quartiles and the narrowest cell.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", type=Path, nargs="+")
+    parser.add_argument("--json", action="store_true", help="print JSON, one array of files")
+    return parser
+
+
+def run(args: argparse.Namespace) -> int:
+    reports = [describe(path, *exr.read(path)) for path in args.file]
+    if args.json:
+        print(json.dumps(reports, indent=1))
+        return 0
+    print("\n\n".join(map(_text, reports)))
+    return 0
+
+
+def describe(path: Path, table: Table, errors: dict[str, float]) -> dict:
+    """A file as plain data."""
+    widths = np.diff(table.texels.astype(float), axis=1).min(axis=1)
+    rows = zip(table.theta_r.tolist(), table.log_mass.tolist(), widths.tolist(), strict=True)
+    return {
+        "file": str(path),
+        "width": table.width,
+        "height": table.height,
+        "bytes_of_texels": table.texels.nbytes,
+        "bytes_of_file": path.stat().st_size,
+        "header": exr.attributes(table),
+        "errors": errors,
+        "rows": [
+            {"theta_r": theta, "log_mass": log_mass, "mass": float(np.exp(log_mass)), "narrowest_cell": width}
+            for theta, log_mass, width in rows
+        ],
+    }
+
+
+LONG = ("hairlut.knots", "hairlut.log_mass")
+
+
+def _text(report: dict) -> str:
+    lines = [f"{report['file']}: {report['width']}x{report['height']} texels, {report['bytes_of_texels']} bytes "
+             f"({report['bytes_of_file']} in the file)"]
+    lines += [f"  {name:24}{value}" for name, value in report["header"].items() if name not in LONG]
+    lines += [f"  error.{name:18}{value:.3e}" for name, value in report["errors"].items()]
+    if not report["errors"]:
+        lines += ["  errors                  not measured"]
+    lines += ["", f"  {'row':>5}  {'theta_r [deg]':>13}  {'mass in domain':>14}  {'narrowest cell [rad]':>20}"]
+    for j, row in enumerate(report["rows"]):
+        mass = f"{row['mass']:.6e}" if row["mass"] else f"e^{row['log_mass']:.1f}"
+        lines.append(f"  {j:5}  {np.degrees(row['theta_r']):13.4f}  {mass:>14}  {row['narrowest_cell']:20.3e}")
+    return "\n".join(lines)

@@ -1,0 +1,5 @@
+"""The error that a user can do something about."""
+
+
+class HairlutError(Exception):
+    """A wrong input. The message names the file or argument, what is wrong, what was expected and the remedy."""

@@ -1,0 +1,171 @@
+"""How a table is read (luts/FORMAT.md): between its rows and columns, and backwards. In double precision.
+
+Rows are blended linearly in theta_r. Within cell i of the blended row X, at the fraction f of the way from X_i to X_(i+1),
+
+    x(f) = X_i + f (D + C (1 - f)),    dx/df = D + C (1 - 2f),    density = (du/dcolumn) / (dx/df),
+
+with the cell's width D, and its curvature C from the widths of the cells beside it, kept below limit * D so that the slope
+stays positive.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .errors import HairlutError
+from .lobes import Array
+
+if TYPE_CHECKING:
+    from .table import Table
+
+MAX_LIMIT = 0.95
+
+
+@dataclass(frozen=True)
+class Cell:
+    """name: "quadratic" or "linear"; limit: bound of the curvature relative to a cell's width, 0 for linear cells."""
+
+    name: str
+    limit: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.name == "linear" and self.limit == 0.0:
+            return
+        if self.name != "quadratic":
+            raise HairlutError(f"cell {self} is not known: expected 'quadratic limit=NUMBER' or 'linear'")
+        if not 0.0 < self.limit <= MAX_LIMIT:
+            raise HairlutError(f"cell {self}: expected a limit above 0, up to {MAX_LIMIT}")
+
+    def __str__(self) -> str:
+        return f"{self.name} limit={self.limit!r}" if self.name == "quadratic" else self.name
+
+    @classmethod
+    def parse(cls, text: str) -> "Cell":
+        """From "linear" or "quadratic limit=NUMBER", as in a file's header."""
+        name, _, parameter = text.partition(" ")
+        key, _, number = parameter.partition("=")
+        try:
+            limit = float(number) if parameter else 0.0
+        except ValueError:
+            limit = np.nan
+        if np.isnan(limit) or (parameter and key != "limit"):
+            raise HairlutError(f"cell {text!r} cannot be read: expected 'quadratic limit=NUMBER' or 'linear'")
+        return cls(name, limit)
+
+
+def padded(texels: Array) -> Array:
+    """(H, W+2) texels with one more at both ends, from which an end cell gets the curvature D - D of its neighbour."""
+    x = np.asarray(texels, float)
+    first = x[:, 0] - 4 * (x[:, 1] - x[:, 0]) + 3 * (x[:, 2] - x[:, 1])
+    last = x[:, -1] + 4 * (x[:, -1] - x[:, -2]) - 3 * (x[:, -2] - x[:, -3])
+    return np.concatenate([first[:, None], x, last[:, None]], axis=1)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """The cells of a table at n viewer inclinations: x0, d, c (n, W-1), and dudc as a method."""
+
+    table: "Table"
+    x0: Array
+    d: Array
+    c: Array
+
+    def angle(self, f: Array) -> Array:
+        """(n, W-1, K) angles at the fractions f (K,) of every cell."""
+        d, c = self.d[..., None], self.c[..., None]
+        return self.x0[..., None] + f * (d + c * (1 - f))
+
+    def slope(self, f: Array) -> Array:
+        """(n, W-1, K) dx/df at the fractions f (K,) of every cell; always positive."""
+        return self.d[..., None] + self.c[..., None] * (1 - 2 * np.asarray(f))
+
+    def du(self, f: Array) -> Array:
+        """(W-1, K) du/dcolumn at the fractions f (K,) of every cell."""
+        width = self.table.width
+        low = np.arange(width - 1)[:, None] + np.asarray(f, float)
+        return self.table.warp.slope(np.minimum(low, width - 1 - low), width)
+
+    def density(self, f: Array) -> Array:
+        """(n, W-1, K) density of the table, per rad, at the fractions f (K,) of every cell."""
+        return self.du(f) / self.slope(f)
+
+
+def cells(table: "Table", theta_r: Array) -> Cells:
+    """The blended cells at theta_r (n,); theta_r outside the table's range is clamped, NaN to its low end."""
+    rows = padded(table.texels)
+    low, high = table.theta_r_range
+    last = table.height - 1
+    r = np.clip(np.nan_to_num(np.atleast_1d(theta_r).astype(float), nan=low), low, high)
+    r = np.clip((r - low) / (high - low) * last, 0, last)
+    j = np.minimum(r.astype(int), last - 1)
+    t = (r - j)[:, None]
+    widths = (1 - t) * np.diff(rows, axis=1)[j] + t * np.diff(rows, axis=1)[j + 1]
+    before, d, after = widths[:, :-2], widths[:, 1:-1], widths[:, 2:]
+    bound = table.cell.limit * d
+    return Cells(
+        table=table,
+        x0=(1 - t) * rows[j, 1:-2] + t * rows[j + 1, 1:-2],
+        d=d,
+        c=np.clip((before - after) / 4, -bound, bound),
+    )
+
+
+def sample(table: "Table", theta_r: Array, u: Array) -> tuple[Array, Array]:
+    """(angle, density) drawn at theta_r (n,) with the numbers u (n,); u is clamped to [0, 1]."""
+    theta_r, u = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(u))
+    u = np.clip(u.astype(float), 0.0, 1.0)
+    upper = u > 0.5
+    return sample_tail(table, theta_r, np.where(upper, 1 - u, u), upper)
+
+
+def sample_tail(table: "Table", theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
+    """As sample, for u = m, or u = 1 - m where upper; all (n,). Keeps the precision of an m near 0 in both tails."""
+    read = cells(table, theta_r)
+    last = table.width - 2
+    c = np.clip(table.warp.fold(m, table.width), 0.0, (table.width - 1) / 2)
+    i = np.minimum(c.astype(int), last)
+    f = np.where(upper, 1 - (c - i), c - i)
+    i = np.where(upper, last - i, i)
+    n = np.arange(len(i))
+    x0, d, curve = read.x0[n, i], read.d[n, i], read.c[n, i]
+    return x0 + f * (d + curve * (1 - f)), table.warp.slope(c, table.width) / (d + curve * (1 - 2 * f))
+
+
+def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Array]:
+    """(cell i, fraction f, slope dx/df), each (n,), at which x (n,) lies; x is clamped to the row's ends."""
+    read = cells(table, theta_r)
+    i = np.clip((read.x0 <= np.asarray(x)[:, None]).sum(axis=1) - 1, 0, table.width - 2)
+    n = np.arange(len(i))
+    d, c = read.d[n, i], read.c[n, i]
+    distance = np.clip(x - read.x0[n, i], 0.0, d)
+    slope = np.sqrt(np.maximum((d + c) ** 2 - 4 * c * distance, 0.0))
+    return i, np.clip(2 * distance / (d + c + slope), 0.0, 1.0), slope
+
+
+def _nearer_end(table: "Table", i: Array, f: Array) -> tuple[Array, Array]:
+    low, high = i + f, (table.width - 2 - i) + (1 - f)
+    return np.minimum(low, high), high < low
+
+
+def pdf(table: "Table", theta_r: Array, x: Array) -> Array:
+    """(n,) density, per rad, with which sample draws x (n,) at theta_r (n,); 0 outside the domain and for NaN."""
+    theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
+    i, f, slope = locate(table, theta_r, np.nan_to_num(x))
+    c, _ = _nearer_end(table, i, f)
+    low, high = np.float32(table.domain)
+    return np.where((x >= low) & (x <= high), table.warp.slope(c, table.width) / slope, 0.0)
+
+
+def invert(table: "Table", theta_r: Array, x: Array) -> Array:
+    """(n,) the numbers u from which sample draws x (n,) at theta_r (n,)."""
+    m, upper = invert_tail(table, theta_r, x)
+    return np.where(upper, 1 - m, m)
+
+
+def invert_tail(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array]:
+    """(m, upper), each (n,): u = m, or u = 1 - m where upper."""
+    theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
+    i, f, _ = locate(table, theta_r, x)
+    c, upper = _nearer_end(table, i, f)
+    return table.warp.unfold(c, table.width), upper

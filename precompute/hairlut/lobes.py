@@ -1,0 +1,130 @@
+"""The lobes: equations (2) to (4) of the source text, in its two readings.
+
+Every lobe is a density of one angle x given the viewer's inclination theta_r: x is the incident inclination theta_i, or
+the relative azimuth phi. It is cut to its domain, not wrapped, and need not be normalised. All angles are in radians.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from .errors import HairlutError
+
+HALF_PI = np.pi / 2
+DEGREE = np.pi / 180
+
+Array = np.ndarray
+LogDensity = Callable[[Array, Array], Array]
+Moments = Callable[[Array], tuple[Array, Array]]
+
+
+@dataclass(frozen=True)
+class Lobe:
+    """One density to be tabulated.
+
+    model, name     "printed", "direct_theta": the table goes to <model>/<name>.exr
+    angle           what x is: "theta_i" or "phi"
+    azimuth         what phi is: "sum" (phi_i + phi_r) or "difference" (phi_i - phi_r); "none" where x is theta_i
+    domain          (low, high) of x
+    log_density     log_density(x, theta_r), broadcasting; -inf where the density is zero; any constant may be added
+    formula         the equations as text, for the header of the texture
+    theta_r_range   range of theta_r that the rows of a table span
+    breakpoints     where the density jumps, bends or has a spike narrower than 1/2000 of the domain
+    moments         (mean, sigma) of theta_r where the lobe is a Gaussian; read only by the closed form, never by the bake
+    """
+
+    model: str
+    name: str
+    angle: str
+    azimuth: str
+    domain: tuple[float, float]
+    log_density: LogDensity
+    formula: str
+    theta_r_range: tuple[float, float] = (-HALF_PI, HALF_PI)
+    breakpoints: tuple[float, ...] = ()
+    moments: Moments | None = None
+
+
+@dataclass(frozen=True)
+class Model:
+    """The three lobes of a hair: direct scattering is the product of the first two, eq. (1)."""
+
+    name: str
+    direct_theta: Lobe
+    direct_phi: Lobe
+    multiple_theta: Lobe
+
+    @property
+    def lobes(self) -> tuple[Lobe, Lobe, Lobe]:
+        return self.direct_theta, self.direct_phi, self.multiple_theta
+
+
+def _gaussian_log_density(moments: Moments, x: Array, theta_r: Array) -> Array:
+    mean, sigma = moments(theta_r)
+    z = (x - mean) / sigma
+    return -0.5 * z * z - np.log(sigma * np.sqrt(2 * np.pi))
+
+
+def gaussian(moments: Moments, **fields) -> Lobe:
+    """A lobe that is a normal density in x, given the mean and sigma of x as functions of theta_r."""
+    return Lobe(log_density=partial(_gaussian_log_density, moments), moments=moments, **fields)
+
+
+def _printed_direct_theta(theta_r: Array) -> tuple[Array, Array]:
+    """Eq. (2), "3 theta_r" taken as an angle."""
+    mu = 3 * theta_r - 2 * DEGREE
+    return mu - theta_r, np.full_like(theta_r, 0.29)
+
+
+def _fitted_direct_theta(theta_r: Array) -> tuple[Array, Array]:
+    """Eq. (2), "3 theta_r - 2 deg" in degrees with theta_r in radians, as the measured lobes have it."""
+    mu = (3 * theta_r - 2) * DEGREE
+    return mu - theta_r, np.full_like(theta_r, 0.29)
+
+
+def _direct_phi(theta_r: Array) -> tuple[Array, Array]:
+    """Eq. (3), of the relative azimuth."""
+    return np.full_like(theta_r, np.pi), theta_r**4 / 4 + 0.59
+
+
+def _multiple_theta(theta_r: Array) -> tuple[Array, Array]:
+    """Eq. (4), 33.5 in degrees."""
+    mu = (33.5 * np.sin(1.25 * theta_r) - 1) * DEGREE
+    return mu - theta_r, theta_r**4 / 20 + 0.49
+
+
+_INCLINATION = {"angle": "theta_i", "azimuth": "none", "domain": (-HALF_PI, HALF_PI)}
+
+
+def _model(name: str, azimuth: str, direct_theta: Moments, mean_text: str) -> Model:
+    relative = {"sum": "phi_i + phi_r", "difference": "phi_i - phi_r"}[azimuth]
+    return Model(
+        name,
+        gaussian(
+            direct_theta, model=name, name="direct_theta", **_INCLINATION,
+            formula=f"Gaussian of theta_i; mean = {mean_text} - theta_r; sigma = 0.29",
+        ),
+        gaussian(
+            _direct_phi, model=name, name="direct_phi", angle="phi", azimuth=azimuth, domain=(0.0, 2 * np.pi),
+            formula=f"Gaussian of phi = {relative} modulo 2 pi; mean = pi; sigma = theta_r^4 / 4 + 0.59",
+        ),
+        gaussian(
+            _multiple_theta, model=name, name="multiple_theta", **_INCLINATION,
+            formula="Gaussian of theta_i; mean = (33.5 sin(1.25 theta_r) - 1) * pi/180 - theta_r; "
+                    "sigma = theta_r^4 / 20 + 0.49",
+        ),
+    )
+
+
+PRINTED = _model("printed", "sum", _printed_direct_theta, "(3 theta_r - 2 * pi/180)")
+FITTED = _model("fitted", "difference", _fitted_direct_theta, "(3 theta_r - 2) * pi/180")
+MODELS = {model.name: model for model in (PRINTED, FITTED)}
+
+
+def find_model(name: str) -> Model:
+    """The model "printed" or "fitted"; HairlutError for any other name."""
+    if name not in MODELS:
+        raise HairlutError(f"model {name!r} is not known: expected one of {', '.join(MODELS)}")
+    return MODELS[name]

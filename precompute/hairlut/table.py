@@ -1,0 +1,87 @@
+"""A table: a lobe's inverse CDF at the knots of a warp, for a row of viewer inclinations."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import HairlutError
+from .integrate import integrate, rows_of_lobe
+from .interpolant import Cell
+from .invert import invert
+from .lobes import Array, Lobe
+from .warp import Warp
+
+MIN_WIDTH, MIN_HEIGHT, MAX_SIDE = 4, 2, 16384
+
+
+@dataclass(frozen=True)
+class Table:
+    """texels (height, width) float32, rad, strictly increasing along each row; log_mass (height,): logarithm of the
+    lobe's mass inside its domain, from the integral that normalised the row; the rest as in Lobe."""
+
+    model: str
+    name: str
+    angle: str
+    azimuth: str
+    domain: tuple[float, float]
+    theta_r_range: tuple[float, float]
+    parameters: str
+    warp: Warp
+    cell: Cell
+    texels: Array
+    log_mass: Array
+
+    @property
+    def width(self) -> int:
+        return self.texels.shape[1]
+
+    @property
+    def height(self) -> int:
+        return self.texels.shape[0]
+
+    @property
+    def theta_r(self) -> Array:
+        """(height,) viewer inclination of each row."""
+        return row_angles(self.theta_r_range, self.height)
+
+
+def row_angles(theta_r_range: tuple[float, float], height: int) -> Array:
+    """theta_r of each row: the first and last row lie on the ends of the range."""
+    return np.linspace(*theta_r_range, height)
+
+
+def check_size(width: int, height: int) -> None:
+    if not (MIN_WIDTH <= width <= MAX_SIDE and MIN_HEIGHT <= height <= MAX_SIDE):
+        raise HairlutError(
+            f"size {width}x{height}: expected a width of {MIN_WIDTH} to {MAX_SIDE} and a height of {MIN_HEIGHT} to {MAX_SIDE}"
+        )
+
+
+def quantiles(lobe: Lobe, theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
+    """(angles (R, K) in double precision, log_mass (R,)) of the tails m, upper (K,) as in invert.invert."""
+    integral = integrate(rows_of_lobe(lobe, theta_r))
+    return invert(integral, m, upper), integral.log_mass
+
+
+def bake_table(lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell) -> Table:
+    """Integrates, normalises, inverts and rounds a lobe once; HairlutError if a cell comes out flat."""
+    check_size(width, height)
+    theta_r = row_angles(lobe.theta_r_range, height)
+    angles, log_mass = quantiles(lobe, theta_r, *warp.knots(width))
+    texels = angles.astype(np.float32)
+    _refuse_flat_cells(lobe, theta_r, texels, warp)
+    return Table(
+        lobe.model, lobe.name, lobe.angle, lobe.azimuth, lobe.domain, lobe.theta_r_range, lobe.formula,
+        warp, cell, texels, log_mass,
+    )
+
+
+def _refuse_flat_cells(lobe: Lobe, theta_r: Array, texels: Array, warp: Warp) -> None:
+    flat = np.argwhere(np.diff(texels, axis=1) <= 0)
+    if len(flat):
+        j, i = flat[0]
+        raise HairlutError(
+            f"{lobe.model}/{lobe.name} at theta_r = {theta_r[j]:.9g} rad: columns {i} and {i + 1} of "
+            f"{texels.shape[1]} round to the same float {texels[j, i]:.9g} ({len(flat)} such cells) with warp {warp}: "
+            "use fewer columns or a larger e"
+        )

@@ -2,4 +2,4 @@
 
 
 class HairlutError(Exception):
-    """A wrong input. The message names the file or argument, what is wrong, what was expected and the remedy."""
+    """A wrong input. The message names the file or argument, what is wrong, what was expected, the remedy."""

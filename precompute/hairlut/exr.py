@@ -1,4 +1,4 @@
-"""Tables as OpenEXR files: the header of luts/FORMAT.md, written whole or not at all, and read with suspicion."""
+"""Tables as OpenEXR files (luts/FORMAT.md): written whole or not at all, and read with suspicion."""
 
 import os
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ KNOT_TOLERANCE = 1e-15
 
 
 def write(path: Path, table: Table, errors: Mapping[str, float] | None = None) -> None:
-    """Writes table to path, which must be named <table.name>.exr; a file of that name is replaced in one step.
+    """Writes table to path, named <table.name>.exr; a file that is there already is replaced in one step.
 
     errors: measured errors by name ("relative_variance", ...), written as hairlut.error.<name>.
     """
@@ -49,7 +49,7 @@ def write(path: Path, table: Table, errors: Mapping[str, float] | None = None) -
 
 
 def attributes(table: Table) -> dict[str, str | int]:
-    """The header of a table without its measured errors. Exact numbers are text: a float attribute has 32 bits."""
+    """The header of a table without its measured errors. Numbers are text: a float attribute has 32 bits."""
     return {
         "colorInteropID": "data",
         "hairlut.format": FORMAT,
@@ -74,7 +74,7 @@ def _numbers(values) -> str:
 
 
 def read(path: Path) -> tuple[Table, dict[str, float]]:
-    """(table, measured errors) of a file; HairlutError naming the file, the attribute and the remedy if it is unfit."""
+    """(table, measured errors) of a file. If it is unfit, HairlutError names file, attribute and remedy."""
     path = Path(path)
     header, channels = _open(path)
     reader = _Header(path, header)
@@ -107,7 +107,9 @@ def _open(path: Path) -> tuple[dict, dict]:
             channels = {name: np.array(channel.pixels) for name, channel in file.channels().items()}
             return dict(file.header()), channels
     except Exception as error:  # the binding raises several unrelated types
-        raise HairlutError(f"{path}: not a complete OpenEXR image ({_first_line(error)}): {REBAKE}") from error
+        raise HairlutError(
+            f"{path}: not a complete OpenEXR image ({_first_line(error)}): {REBAKE}"
+        ) from error
 
 
 def _first_line(error: Exception) -> str:
@@ -173,7 +175,9 @@ def _refuse_other_formats(reader: _Header) -> None:
     if not isinstance(version, int) or version < 1:
         raise reader.fail("format", f"is {version!r}, expected {FORMAT}")
     if version > FORMAT:
-        raise reader.fail("format", f"is {version}, expected {FORMAT} or less", "use a newer hairlut to read this file")
+        raise reader.fail(
+            "format", f"is {version}, expected {FORMAT} or less", "use a newer hairlut to read this file"
+        )
 
 
 def _texels(path: Path, header: dict, channels: dict) -> np.ndarray:
@@ -186,7 +190,9 @@ def _texels(path: Path, header: dict, channels: dict) -> np.ndarray:
     for name in ("dataWindow", "displayWindow"):
         corners = [tuple(int(x) for x in corner) for corner in header[name]]
         if corners != [(0, 0), (width - 1, height - 1)]:
-            raise HairlutError(f"{path}: {name} is {corners}, expected it to start at 0 0 and span the image: {REBAKE}")
+            raise HairlutError(
+                f"{path}: {name} is {corners}, expected it to start at 0 0 and span the image: {REBAKE}"
+            )
     try:
         check_size(width, height)
     except HairlutError as error:
@@ -208,7 +214,9 @@ def _check_rows(path: Path, table: Table) -> None:
     wrong = ~np.isfinite(texels)
     if wrong.any():
         j, i = np.argwhere(wrong)[0]
-        raise HairlutError(f"{path}: row {j}, column {i} is {texels[j, i]}, expected a finite angle: {REBAKE}")
+        raise HairlutError(
+            f"{path}: row {j}, column {i} is {texels[j, i]}, expected a finite angle: {REBAKE}"
+        )
     wrong = ~(np.diff(texels, axis=1) > 0)
     if wrong.any():
         j, i = np.argwhere(wrong)[0]

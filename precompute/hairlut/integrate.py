@@ -1,9 +1,9 @@
 """The normalising integral of any log-density on an interval, and its running integral from both ends.
 
-One-dimensional Gauss-Legendre panels, bisected until the integral over a panel and over its two halves agree. Nothing is
-assumed about the density but that it is given as a logarithm: subtracting a row's maximum before exponentiating keeps a
-lobe whose mass underflows, and running sums from both ends keep the relative precision of both tails, which a difference
-from 1 would lose. All rows are worked on at once.
+One-dimensional Gauss-Legendre panels, bisected until the integral over a panel and over its two halves agree.
+Nothing is assumed about the density but that it is given as a logarithm: subtracting a row's maximum before
+exponentiating keeps a lobe whose mass underflows, and running sums from both ends keep the relative precision
+of both tails, which a difference from 1 would lose. All rows are worked on at once.
 """
 
 from collections.abc import Callable
@@ -86,12 +86,13 @@ def rows_of_lobe(lobe: Lobe, theta_r: Array) -> Rows:
     """The lobe at each theta_r (R,)."""
     theta_r = np.asarray(theta_r, float)
     count = len(theta_r)
-    inside = [x for x in sorted(lobe.breakpoints) if lobe.domain[0] < x < lobe.domain[1]]
+    given = lobe.breakpoints
+    given = given(theta_r) if callable(given) else np.tile(given, (count, 1))
     return Rows(
         log_density=_at_rows(lobe.log_density, theta_r),
         low=np.full(count, lobe.domain[0]),
         high=np.full(count, lobe.domain[1]),
-        breakpoints=np.tile(inside, (count, 1)),
+        breakpoints=np.clip(given, *lobe.domain),
         label=lambda row: f"{lobe.model}/{lobe.name} at theta_r = {theta_r[row]:.9g} rad",
     )
 
@@ -105,7 +106,10 @@ def _at_rows(log_density: LogDensity, theta_r: Array) -> Callable[[Array, Array]
 
 
 def integrate(rows: Rows) -> Integral:
-    """Integrates every row to about 1e-14 relative, in both tails; HairlutError where a density cannot be resolved."""
+    """Integrates every row to about 1e-14 relative, in both tails.
+
+    HairlutError where a density is zero everywhere, not a number, or cannot be resolved.
+    """
     panels = _evaluate(rows, *_first_panels(rows))
     for _ in range(MAX_ROUNDS):
         scale = _row_maximum(rows, panels)
@@ -120,11 +124,30 @@ def _first_panels(rows: Rows) -> tuple[Array, Array, Array]:
     count = len(rows.low)
     even = rows.low[:, None] + (rows.high - rows.low)[:, None] * np.arange(FIRST_PANELS + 1) / FIRST_PANELS
     even[:, -1] = rows.high
-    edges = np.sort(np.concatenate([even, rows.breakpoints.reshape(count, -1)], axis=1), axis=1)
+    given = np.sort(rows.breakpoints.reshape(count, -1), axis=1)
+    edges = np.sort(np.concatenate([_give_way(even, given), given], axis=1), axis=1)
     row = np.repeat(np.arange(count), edges.shape[1] - 1)
     a, b = edges[:, :-1].ravel(), edges[:, 1:].ravel()
     wide = b > a
     return row[wide], a[wide], b[wide]
+
+
+def _give_way(even: Array, given: Array) -> Array:
+    """Moves an edge that almost is a breakpoint onto it: slivers would drag their neighbours down to their width."""
+    if not given.shape[1]:
+        return even
+    near = (even[:, 1:2] - even[:, :1]) / 64
+    for r, (edges, points) in enumerate(zip(even, given, strict=True)):
+        k = (
+            np.clip(np.searchsorted(points, edges), 1, len(points) - 1)
+            if len(points) > 1
+            else np.zeros(len(edges), int)
+        )
+        k = np.where(abs(points[k - 1] - edges) < abs(points[k] - edges), k - 1, k)
+        moved = abs(points[k] - edges) < near[r]
+        moved[[0, -1]] = False
+        edges[moved] = points[k][moved]
+    return even
 
 
 def _log_density(rows: Rows, x: Array, row: Array) -> Array:
@@ -160,7 +183,7 @@ def _row_maximum(rows: Rows, panels: _Panels) -> Array:
     np.maximum.at(scale, panels.row, panels.top)
     if not np.isfinite(scale).all():
         row = int(np.argmin(np.isfinite(scale)))
-        raise HairlutError(f"{rows.label(row)}: the density is zero over the whole domain: check the domain and formula")
+        raise HairlutError(f"{rows.label(row)}: the density is zero over the whole domain: check both")
     return scale
 
 
@@ -193,8 +216,9 @@ def _unresolved(panels: _Panels, scale: Array, count: int) -> Array:
 def _bisect(rows: Rows, panels: _Panels, split: Array) -> _Panels:
     middle = (panels.a[split] + panels.b[split]) / 2
     row = np.concatenate([panels.row[split]] * 2)
-    new = _evaluate(rows, row, np.concatenate([panels.a[split], middle]), np.concatenate([middle, panels.b[split]]))
-    merged = [np.concatenate([getattr(panels, f)[~split], getattr(new, f)]) for f in _Panels.__dataclass_fields__]
+    a, b = np.concatenate([panels.a[split], middle]), np.concatenate([middle, panels.b[split]])
+    old, new = vars(panels), vars(_evaluate(rows, row, a, b))
+    merged = [np.concatenate([old[name][~split], new[name]]) for name in old]
     order = np.lexsort((merged[1], merged[0]))
     result = _Panels(*(values[order] for values in merged))
     if np.bincount(result.row).max() > MAX_PANELS:
@@ -205,7 +229,7 @@ def _bisect(rows: Rows, panels: _Panels, split: Array) -> _Panels:
 def _complaint(rows: Rows, panels: _Panels, p: int) -> str:
     return (
         f"{rows.label(panels.row[p])}: the integral does not converge between x = {panels.a[p]:.9g} and "
-        f"{panels.b[p]:.9g}: the density is noisy or unbounded there; smooth it, or name its jumps as breakpoints"
+        f"{panels.b[p]:.9g}: the density is noisy or unbounded there; smooth it, or name its breakpoints"
     )
 
 

@@ -1,11 +1,12 @@
 """How a table is read (luts/FORMAT.md): between its rows and columns, and backwards. In double precision.
 
-Rows are blended linearly in theta_r. Within cell i of the blended row X, at the fraction f of the way from X_i to X_(i+1),
+Rows are blended linearly in theta_r. Within cell i of the blended row X, at the fraction f of the way from
+X_i to X_(i+1),
 
     x(f) = X_i + f (D + C (1 - f)),    dx/df = D + C (1 - 2f),    density = (du/dcolumn) / (dx/df),
 
-with the cell's width D, and its curvature C from the widths of the cells beside it, kept below limit * D so that the slope
-stays positive.
+with the cell's width D, and its curvature C from the widths of the cells beside it, kept below limit * D so
+that the slope stays positive.
 """
 
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ MAX_LIMIT = 0.95
 
 @dataclass(frozen=True)
 class Cell:
-    """name: "quadratic" or "linear"; limit: bound of the curvature relative to a cell's width, 0 for linear cells."""
+    """name: "quadratic" or "linear"; limit: bound of the curvature, relative to the width; 0 for linear."""
 
     name: str
     limit: float = 0.0
@@ -55,7 +56,7 @@ class Cell:
 
 
 def padded(texels: Array) -> Array:
-    """(H, W+2) texels with one more at both ends, from which an end cell gets the curvature D - D of its neighbour."""
+    """(H, W+2) texels and one more at both ends, by which end cells get the curvature D - D_neighbour."""
     x = np.asarray(texels, float)
     first = x[:, 0] - 4 * (x[:, 1] - x[:, 0]) + 3 * (x[:, 2] - x[:, 1])
     last = x[:, -1] + 4 * (x[:, -1] - x[:, -2]) - 3 * (x[:, -2] - x[:, -3])
@@ -64,7 +65,7 @@ def padded(texels: Array) -> Array:
 
 @dataclass(frozen=True)
 class Cells:
-    """The cells of a table at n viewer inclinations: x0, d, c (n, W-1), and dudc as a method."""
+    """The cells of a table at n viewer inclinations: low end x0, width d, curvature c, each (n, W-1)."""
 
     table: "Table"
     x0: Array
@@ -73,22 +74,41 @@ class Cells:
 
     def angle(self, f: Array) -> Array:
         """(n, W-1, K) angles at the fractions f (K,) of every cell."""
-        d, c = self.d[..., None], self.c[..., None]
-        return self.x0[..., None] + f * (d + c * (1 - f))
+        return _angle(self.x0[..., None], self.d[..., None], self.c[..., None], f)
 
     def slope(self, f: Array) -> Array:
         """(n, W-1, K) dx/df at the fractions f (K,) of every cell; always positive."""
-        return self.d[..., None] + self.c[..., None] * (1 - 2 * np.asarray(f))
+        return _slope(self.d[..., None], self.c[..., None], np.asarray(f))
 
     def du(self, f: Array) -> Array:
         """(W-1, K) du/dcolumn at the fractions f (K,) of every cell."""
-        width = self.table.width
-        low = np.arange(width - 1)[:, None] + np.asarray(f, float)
-        return self.table.warp.slope(np.minimum(low, width - 1 - low), width)
+        return self.du_at(np.arange(self.table.width - 1)[:, None], np.asarray(f, float))
 
     def density(self, f: Array) -> Array:
         """(n, W-1, K) density of the table, per rad, at the fractions f (K,) of every cell."""
         return self.du(f) / self.slope(f)
+
+    def angle_at(self, n: Array, i: Array, f: Array) -> Array:
+        """Angles at the fractions f of the cells i of the inclinations number n, all broadcasting."""
+        return _angle(self.x0[n, i], self.d[n, i], self.c[n, i], f)
+
+    def slope_at(self, n: Array, i: Array, f: Array) -> Array:
+        """dx/df, likewise."""
+        return _slope(self.d[n, i], self.c[n, i], f)
+
+    def du_at(self, i: Array, f: Array) -> Array:
+        """du/dcolumn at the fractions f of the cells i, broadcast against each other."""
+        return self.table.warp.slope(
+            np.minimum(i + f, (self.table.width - 2 - i) + (1 - f)), self.table.width
+        )
+
+
+def _angle(x0: Array, d: Array, c: Array, f: Array) -> Array:
+    return x0 + f * (d + c * (1 - f))
+
+
+def _slope(d: Array, c: Array, f: Array) -> Array:
+    return d + c * (1 - 2 * f)
 
 
 def cells(table: "Table", theta_r: Array) -> Cells:
@@ -120,16 +140,20 @@ def sample(table: "Table", theta_r: Array, u: Array) -> tuple[Array, Array]:
 
 
 def sample_tail(table: "Table", theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
-    """As sample, for u = m, or u = 1 - m where upper; all (n,). Keeps the precision of an m near 0 in both tails."""
+    """As sample, for u = m, or u = 1 - m where upper; all (n,). Both tails keep the precision of m."""
     read = cells(table, theta_r)
+    i, f, c = place(table, m, upper)
+    n = np.arange(len(i))
+    return read.angle_at(n, i, f), table.warp.slope(c, table.width) / read.slope_at(n, i, f)
+
+
+def place(table: "Table", m: Array, upper: Array) -> tuple[Array, Array, Array]:
+    """(cell i, fraction f, folded column c), each (n,), of u = m <= 1/2, or u = 1 - m where upper."""
     last = table.width - 2
     c = np.clip(table.warp.fold(m, table.width), 0.0, (table.width - 1) / 2)
     i = np.minimum(c.astype(int), last)
     f = np.where(upper, 1 - (c - i), c - i)
-    i = np.where(upper, last - i, i)
-    n = np.arange(len(i))
-    x0, d, curve = read.x0[n, i], read.d[n, i], read.c[n, i]
-    return x0 + f * (d + curve * (1 - f)), table.warp.slope(c, table.width) / (d + curve * (1 - 2 * f))
+    return np.where(upper, last - i, i), f, c
 
 
 def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Array]:
@@ -149,7 +173,7 @@ def _nearer_end(table: "Table", i: Array, f: Array) -> tuple[Array, Array]:
 
 
 def pdf(table: "Table", theta_r: Array, x: Array) -> Array:
-    """(n,) density, per rad, with which sample draws x (n,) at theta_r (n,); 0 outside the domain and for NaN."""
+    """(n,) density, per rad, with which sample draws x (n,) at theta_r (n,); 0 outside the domain."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
     i, f, slope = locate(table, theta_r, np.nan_to_num(x))
     c, _ = _nearer_end(table, i, f)

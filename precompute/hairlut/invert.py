@@ -10,10 +10,10 @@ MAX_STEPS = 120
 
 
 def invert(integral: Integral, m: Array, upper: Array) -> Array:
-    """Angles (R, K) that leave the part m (K,) of a row's mass below them, or above them where upper (K,) is true.
+    """Angles (R, K) with the part m (K,) of a row's mass below them, or above them where upper (K,) is set.
 
-    m in [0, 1]; with m <= 1/2 and `upper` chosen accordingly both tails come out to full relative precision. m = 0 gives
-    the end of the domain exactly.
+    m in [0, 1]; with m <= 1/2 and `upper` chosen accordingly both tails come out to full relative precision.
+    m = 0 gives the end of the domain exactly.
     """
     m, upper = np.broadcast_arrays(np.asarray(m, float), upper)
     result = np.empty((len(integral.mantissa), len(m)))
@@ -43,7 +43,9 @@ def _density(integral: Integral, x: Array, row: Array) -> Array:
     return np.exp(integral.rows.log_density(x, row) - integral.log_scale[row][:, None])
 
 
-def _newton(integral: Integral, row: Array, start: Array, end: Array, rest: Array, mass: Array, target: Array) -> Array:
+def _newton(
+    integral: Integral, row: Array, start: Array, end: Array, rest: Array, mass: Array, target: Array
+) -> Array:
     """Newton steps in the distance from a panel's start, kept inside a bracket that every step narrows."""
     sign = np.sign(end - start)
     low, high = np.zeros_like(start), abs(end - start)
@@ -68,4 +70,6 @@ def _newton(integral: Integral, row: Array, start: Array, end: Array, rest: Arra
         done |= high[active] - low[active] <= EPS * abs(start[active])
         active = active[~done]
     label = integral.rows.label(row[active[0]])
-    raise HairlutError(f"{label}: no angle found for a mass of {target[active[0]]:.3g}: the density is not a function of x alone")
+    raise HairlutError(
+        f"{label}: inversion does not converge: the log-density differs from one call to the next"
+    )

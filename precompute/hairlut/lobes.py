@@ -1,7 +1,8 @@
 """The lobes: equations (2) to (4) of the source text, in its two readings.
 
-Every lobe is a density of one angle x given the viewer's inclination theta_r: x is the incident inclination theta_i, or
-the relative azimuth phi. It is cut to its domain, not wrapped, and need not be normalised. All angles are in radians.
+Every lobe is a density of one angle x given the viewer's inclination theta_r: x is the incident inclination
+theta_i, or the relative azimuth phi. It is cut to its domain, not wrapped, and need not be normalised. All
+angles are in radians.
 """
 
 from collections.abc import Callable
@@ -18,6 +19,7 @@ DEGREE = np.pi / 180
 Array = np.ndarray
 LogDensity = Callable[[Array, Array], Array]
 Moments = Callable[[Array], tuple[Array, Array]]
+Breakpoints = tuple[float, ...] | Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -26,13 +28,14 @@ class Lobe:
 
     model, name     "printed", "direct_theta": the table goes to <model>/<name>.exr
     angle           what x is: "theta_i" or "phi"
-    azimuth         what phi is: "sum" (phi_i + phi_r) or "difference" (phi_i - phi_r); "none" where x is theta_i
+    azimuth         what phi is: "sum" (phi_i + phi_r), "difference" (phi_i - phi_r); "none" for theta_i
     domain          (low, high) of x
-    log_density     log_density(x, theta_r), broadcasting; -inf where the density is zero; any constant may be added
+    log_density     log_density(x, theta_r), broadcasting; -inf where the density is zero; free in a constant
     formula         the equations as text, for the header of the texture
     theta_r_range   range of theta_r that the rows of a table span
-    breakpoints     where the density jumps, bends or has a spike narrower than 1/2000 of the domain
-    moments         (mean, sigma) of theta_r where the lobe is a Gaussian; read only by the closed form, never by the bake
+    breakpoints     where the density jumps, or has a spike narrower than 1/2000 of the domain; where these
+                    places move with theta_r (R,), a function that returns them as (R, B)
+    moments         (mean, sigma) at theta_r if the lobe is a Gaussian; for the closed form, not for the bake
     """
 
     model: str
@@ -43,7 +46,7 @@ class Lobe:
     log_density: LogDensity
     formula: str
     theta_r_range: tuple[float, float] = (-HALF_PI, HALF_PI)
-    breakpoints: tuple[float, ...] = ()
+    breakpoints: Breakpoints = ()
     moments: Moments | None = None
 
 
@@ -103,17 +106,28 @@ def _model(name: str, azimuth: str, direct_theta: Moments, mean_text: str) -> Mo
     return Model(
         name,
         gaussian(
-            direct_theta, model=name, name="direct_theta", **_INCLINATION,
+            direct_theta,
+            model=name,
+            name="direct_theta",
+            **_INCLINATION,
             formula=f"Gaussian of theta_i; mean = {mean_text} - theta_r; sigma = 0.29",
         ),
         gaussian(
-            _direct_phi, model=name, name="direct_phi", angle="phi", azimuth=azimuth, domain=(0.0, 2 * np.pi),
+            _direct_phi,
+            model=name,
+            name="direct_phi",
+            angle="phi",
+            azimuth=azimuth,
+            domain=(0.0, 2 * np.pi),
             formula=f"Gaussian of phi = {relative} modulo 2 pi; mean = pi; sigma = theta_r^4 / 4 + 0.59",
         ),
         gaussian(
-            _multiple_theta, model=name, name="multiple_theta", **_INCLINATION,
+            _multiple_theta,
+            model=name,
+            name="multiple_theta",
+            **_INCLINATION,
             formula="Gaussian of theta_i; mean = (33.5 sin(1.25 theta_r) - 1) * pi/180 - theta_r; "
-                    "sigma = theta_r^4 / 20 + 0.49",
+            "sigma = theta_r^4 / 20 + 0.49",
         ),
     )
 

@@ -16,8 +16,12 @@ MIN_WIDTH, MIN_HEIGHT, MAX_SIDE = 4, 2, 16384
 
 @dataclass(frozen=True)
 class Table:
-    """texels (height, width) float32, rad, strictly increasing along each row; log_mass (height,): logarithm of the
-    lobe's mass inside its domain, from the integral that normalised the row; the rest as in Lobe."""
+    """A table and all that its file's header says of it.
+
+    texels      (height, width) float32, rad, strictly increasing along each row
+    log_mass    (height,) logarithm of the lobe's mass inside its domain, by which each row was normalised
+    parameters  Lobe.formula; the other fields as in Lobe
+    """
 
     model: str
     name: str
@@ -53,7 +57,8 @@ def row_angles(theta_r_range: tuple[float, float], height: int) -> Array:
 def check_size(width: int, height: int) -> None:
     if not (MIN_WIDTH <= width <= MAX_SIDE and MIN_HEIGHT <= height <= MAX_SIDE):
         raise HairlutError(
-            f"size {width}x{height}: expected a width of {MIN_WIDTH} to {MAX_SIDE} and a height of {MIN_HEIGHT} to {MAX_SIDE}"
+            f"size {width}x{height}: expected a width of {MIN_WIDTH} to {MAX_SIDE} "
+            f"and a height of {MIN_HEIGHT} to {MAX_SIDE}"
         )
 
 
@@ -71,8 +76,17 @@ def bake_table(lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell) -> T
     texels = angles.astype(np.float32)
     _refuse_flat_cells(lobe, theta_r, texels, warp)
     return Table(
-        lobe.model, lobe.name, lobe.angle, lobe.azimuth, lobe.domain, lobe.theta_r_range, lobe.formula,
-        warp, cell, texels, log_mass,
+        lobe.model,
+        lobe.name,
+        lobe.angle,
+        lobe.azimuth,
+        lobe.domain,
+        lobe.theta_r_range,
+        lobe.formula,
+        warp,
+        cell,
+        texels,
+        log_mass,
     )
 
 
@@ -82,6 +96,6 @@ def _refuse_flat_cells(lobe: Lobe, theta_r: Array, texels: Array, warp: Warp) ->
         j, i = flat[0]
         raise HairlutError(
             f"{lobe.model}/{lobe.name} at theta_r = {theta_r[j]:.9g} rad: columns {i} and {i + 1} of "
-            f"{texels.shape[1]} round to the same float {texels[j, i]:.9g} ({len(flat)} such cells) with warp {warp}: "
-            "use fewer columns or a larger e"
+            f"{texels.shape[1]} round to the same float {texels[j, i]:.9g} ({len(flat)} such cells) "
+            f"with the warp {warp}: use fewer columns or a larger e"
         )

@@ -1,8 +1,9 @@
 """The warp: which cumulative probability u each column of a table stands for.
 
-It is symmetric about u = 1/2, so everything is written for the smaller tail m = min(u, 1-u) and its folded column c,
-counted from the nearer end of the axis. The quartic warp makes columns uniform in (m + e)^(1/4): dense near the ends,
-where a quantile function is steep, and with a slope that stays finite at the ends themselves.
+It is symmetric about u = 1/2, so everything is written for the smaller tail m = min(u, 1-u) and its folded
+column c, counted from the nearer end of the axis. The quartic warp makes columns uniform in (m + e)^(1/4):
+dense near the ends, where a quantile function is steep, and with a slope that stays finite at the ends
+themselves.
 """
 
 from dataclasses import dataclass
@@ -74,7 +75,7 @@ class Warp:
         return np.full_like(c, k, dtype=float) if self.name == "uniform" else 4 * k * (f0 + k * c) ** 3
 
     def knots(self, width: int) -> tuple[Array, Array]:
-        """(m, upper), both (width,): the smaller tail of each column, and whether it is the one above the texel."""
+        """(m, upper), each (width,): the smaller tail of a column, and whether it lies above the texel."""
         column = np.arange(width)
         mirrored = width - 1 - column
         upper = mirrored < column

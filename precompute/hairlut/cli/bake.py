@@ -24,14 +24,29 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--model", action="append", help=f"one of {', '.join(MODELS)}; may be repeated (default: all)")
-    parser.add_argument("--size", type=parse_size, default=(64, 64), metavar="WxH",
-                        help="columns (u) and rows (theta_r) of each texture (default: 64x64)")
+    parser.add_argument(
+        "--model", action="append", help=f"one of {', '.join(MODELS)}; may be repeated (default: all)"
+    )
+    parser.add_argument(
+        "--size",
+        type=parse_size,
+        default=(64, 64),
+        metavar="WxH",
+        help="columns (u) and rows (theta_r) of each texture (default: 64x64)",
+    )
     parser.add_argument("--out", type=Path, default=Path("luts"), metavar="DIR", help="default: luts")
-    parser.add_argument("--warp", default="quartic e=9.5367431640625e-07", metavar="WARP",
-                        help="where the columns lie on the u axis: 'quartic e=NUMBER' or 'uniform' (default: %(default)s)")
-    parser.add_argument("--cell", default="quadratic limit=0.9", metavar="CELL",
-                        help="curve inside a cell: 'quadratic limit=NUMBER' or 'linear' (default: %(default)s)")
+    parser.add_argument(
+        "--warp",
+        default="quartic e=9.5367431640625e-07",
+        metavar="WARP",
+        help="where the columns lie on the u axis: 'quartic e=NUMBER' or 'uniform' (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--cell",
+        default="quadratic limit=0.9",
+        metavar="CELL",
+        help="curve inside a cell: 'quadratic limit=NUMBER' or 'linear' (default: %(default)s)",
+    )
     return parser
 
 

@@ -13,7 +13,7 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     parser = subparsers.add_parser(
         "export",
         help="write tables in another form",
-        description="Writes baked tables in a form that needs no OpenEXR. c: a C source with the models' tables.",
+        description="Writes baked tables in a form that needs no OpenEXR. c: a C source of the models.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -18,8 +18,8 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     parser = subparsers.add_parser(
         "inspect",
         help="print a texture's header, size, errors and rows",
-        description="Prints the header of a texture, its measured errors, and for each row the mass of the lobe inside "
-        "its domain, the quartiles and the narrowest cell.",
+        description="Prints a texture's header and measured errors, and for each row the mass of the lobe "
+        "inside its domain and the width of the narrowest cell.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -60,14 +60,21 @@ LONG = ("hairlut.knots", "hairlut.log_mass")
 
 
 def _text(report: dict) -> str:
-    lines = [f"{report['file']}: {report['width']}x{report['height']} texels, {report['bytes_of_texels']} bytes "
-             f"({report['bytes_of_file']} in the file)"]
+    lines = [
+        f"{report['file']}: {report['width']}x{report['height']} texels, {report['bytes_of_texels']} bytes "
+        f"({report['bytes_of_file']} in the file)"
+    ]
     lines += [f"  {name:24}{value}" for name, value in report["header"].items() if name not in LONG]
     lines += [f"  error.{name:18}{value:.3e}" for name, value in report["errors"].items()]
     if not report["errors"]:
         lines += ["  errors                  not measured"]
-    lines += ["", f"  {'row':>5}  {'theta_r [deg]':>13}  {'mass in domain':>14}  {'narrowest cell [rad]':>20}"]
+    lines += [
+        "",
+        f"  {'row':>5}  {'theta_r [deg]':>13}  {'mass in domain':>14}  {'narrowest cell [rad]':>20}",
+    ]
     for j, row in enumerate(report["rows"]):
         mass = f"{row['mass']:.6e}" if row["mass"] else f"e^{row['log_mass']:.1f}"
-        lines.append(f"  {j:5}  {np.degrees(row['theta_r']):13.4f}  {mass:>14}  {row['narrowest_cell']:20.3e}")
+        lines.append(
+            f"  {j:5}  {np.degrees(row['theta_r']):13.4f}  {mass:>14}  {row['narrowest_cell']:20.3e}"
+        )
     return "\n".join(lines)

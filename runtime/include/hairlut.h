@@ -44,7 +44,7 @@ typedef enum hairlut_result {
     HAIRLUT_ERROR_ATTRIBUTE, /* a header attribute is missing or has an unexpected value */
     HAIRLUT_ERROR_VERSION,   /* the file is of a newer format than this library reads */
     HAIRLUT_ERROR_TABLE,     /* the texels are not a table: NaN, not increasing, outside the domain, too small */
-    HAIRLUT_ERROR_UNSUPPORTED /* built without the EXR loader */
+    HAIRLUT_ERROR_UNSUPPORTED /* the file needs a feature (a compression) that the OpenEXR library in use lacks */
 } hairlut_result;
 
 /* A static string for any value of `result`; never NULL. */
@@ -70,15 +70,15 @@ typedef enum hairlut_azimuth {
 /* One table as it stands in a file (luts/FORMAT.md): row j belongs to theta_r = theta_r_min + j (theta_r_max -
  * theta_r_min)/(height-1); texels[j*width + i] is the angle whose cumulative probability is knot i. */
 typedef struct hairlut_table {
-    const float *texels;  /* width*height floats, row-major, strictly increasing along each row */
-    int width;            /* >= 4 */
-    int height;           /* >= 2 */
-    float theta_r_min;    /* rad, < theta_r_max */
-    float theta_r_max;    /* rad */
-    float domain_min;     /* rad; the first texel of every row */
-    float domain_max;     /* rad; the last texel of every row */
+    const float *texels;  /* width*height floats, row-major; along a row each is at least 1e-12 above the last */
+    int width;            /* 4 to 4096 */
+    int height;           /* 2 to 4096 */
+    float theta_r_min;    /* rad, -2 pi <= theta_r_min < theta_r_max */
+    float theta_r_max;    /* rad, <= 2 pi */
+    float domain_min;     /* rad, -2 pi <= domain_min; the first texel of every row */
+    float domain_max;     /* rad, <= 2 pi; the last texel of every row */
     hairlut_warp warp;
-    float warp_e;         /* the quartic warp's parameter, > 0; ignored for the uniform warp */
+    float warp_e;         /* the quartic warp's parameter, 1e-12 to 1; ignored for the uniform warp */
     float cell_limit;     /* in [0, 0.95]: bound of a cell's curvature; 0 makes cells linear */
 } hairlut_table;
 
@@ -105,7 +105,7 @@ enum { HAIRLUT_MESSAGE_SIZE = 512 };
 HAIRLUT_API hairlut_result hairlut_validate(const hairlut_table *table, char *message);
 
 /* Builds a model from three tables in memory. The texels are copied: the caller may free them when this returns.
- * Every table is validated first. On error *out is NULL and nothing stays allocated. Free with hairlut_free. */
+ * Every table is validated first; theta tables must lie within [-pi/2, pi/2], the azimuth table within [0, 2 pi]. On error *out is NULL and nothing stays allocated. Free with hairlut_free. */
 HAIRLUT_API hairlut_result hairlut_model_create(const hairlut_model_desc *desc, const hairlut_allocator *allocator,
                                                 hairlut_model **out, char *message);
 
@@ -193,10 +193,11 @@ HAIRLUT_API void hairlut_pdf_multiple_n(const hairlut_model *model, size_t n, co
 
 /* Loads direct_theta.exr, direct_phi.exr and multiple_theta.exr from `directory` (luts/FORMAT.md says what is checked).
  * On error *out is NULL, nothing stays allocated, and `message`, if not NULL, holds HAIRLUT_MESSAGE_SIZE bytes and
- * receives the file, the attribute, what was expected and what to do. Free with hairlut_free. */
-HAIRLUT_API hairlut_result hairlut_load(const char *directory, hairlut_model **out);
-HAIRLUT_API hairlut_result hairlut_load_with(const char *directory, const hairlut_allocator *allocator,
-                                             hairlut_model **out, char *message);
+ * receives the file, the attribute, what was expected and what to do. Free with hairlut_free.
+ * OpenEXR takes its own temporary memory from malloc. Any number of threads may load at once. */
+HAIRLUT_EXR_API hairlut_result hairlut_load(const char *directory, hairlut_model **out);
+HAIRLUT_EXR_API hairlut_result hairlut_load_with(const char *directory, const hairlut_allocator *allocator,
+                                                 hairlut_model **out, char *message);
 
 #ifdef __cplusplus
 }

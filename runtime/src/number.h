@@ -1,0 +1,68 @@
+/* Decimal numbers from text whatever the locale: strtod reads "0,5" where the program's user set a comma. */
+#ifndef HAIRLUT_NUMBER_H
+#define HAIRLUT_NUMBER_H
+
+#include <stdint.h>
+
+static inline int hairlut_is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* value * 10^exponent, |exponent| <= 400. Powers up to 22 are exact doubles. */
+static inline double hairlut_scale_decimal(double value, int exponent)
+{
+    for (; exponent >= 22; exponent -= 22)
+        value *= 1e22;
+    for (; exponent <= -22; exponent += 22)
+        value /= 1e22;
+    double power = 1.0;
+    for (int k = 0; k < (exponent < 0 ? -exponent : exponent); ++k)
+        power *= 10.0;
+    return exponent < 0 ? value / power : value * power;
+}
+
+/* Reads an optional sign, digits with an optional point, and an optional exponent at *text (ending at `end`), to within
+ * 2 ulp of double, and moves *text behind it. Returns 0, without moving, where no finite number stands. */
+static inline int hairlut_read_number(const char **text, const char *end, double *number)
+{
+    const char *p = *text;
+    const int negative = p < end && *p == '-';
+    uint64_t mantissa = 0;
+    int exponent = 0, digits = 0, point = 0;
+    p += p < end && (*p == '-' || *p == '+');
+    for (; p < end && (hairlut_is_digit(*p) || (*p == '.' && !point)); ++p) {
+        if (*p == '.') {
+            point = 1;
+            continue;
+        }
+        ++digits;
+        if (mantissa < UINT64_C(100000000000000000)) { /* 18 digits are kept, more than a double holds */
+            mantissa = 10 * mantissa + (uint64_t)(*p - '0');
+            exponent -= point;
+        } else {
+            exponent += !point;
+        }
+    }
+    if (digits == 0 || digits > 100)
+        return 0;
+    if (p < end && (*p == 'e' || *p == 'E')) {
+        int power = 0, down = 0;
+        ++p;
+        down = p < end && *p == '-';
+        p += p < end && (*p == '-' || *p == '+');
+        if (p == end || !hairlut_is_digit(*p))
+            return 0;
+        for (; p < end && hairlut_is_digit(*p); ++p)
+            power = power < 1000 ? 10 * power + (*p - '0') : power;
+        exponent += down ? -power : power;
+    }
+    if (exponent < -400 || exponent > 300)
+        return 0;
+    const double magnitude = hairlut_scale_decimal((double)mantissa, exponent);
+    *number = negative ? -magnitude : magnitude;
+    *text = p;
+    return magnitude <= 1e300;
+}
+
+#endif

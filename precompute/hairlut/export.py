@@ -15,6 +15,7 @@ from .warp import Warp
 
 TABLES = ("direct_theta", "direct_phi", "multiple_theta")
 AZIMUTHS = {"sum": "HAIRLUT_AZIMUTH_SUM", "difference": "HAIRLUT_AZIMUTH_DIFFERENCE"}
+AXIS = ("columns", "height", "warp", "row_origin", "row_scale", "low", "high", "e", "f0", "k", "limit")
 WARPS = {"quartic": "HAIRLUT_WARP_QUARTIC", "uniform": "HAIRLUT_WARP_UNIFORM"}
 
 
@@ -26,7 +27,7 @@ def export(paths: Sequence[Path], target: str, out: Path) -> Path:
 
 
 def export_c(directories: Sequence[Path], out: Path) -> Path:
-    """One C source that defines hairlut_builtin_entries (runtime/src/internal.h), a model a directory."""
+    """One C source that defines hairlut_builtin_entries (runtime/src/internal.h), one for each directory."""
     models = [read_model(directory) for directory in directories]
     names = [tables[0].model for tables in models]
     if len({_identifier(name) for name in names}) < len(names):
@@ -80,6 +81,16 @@ def write_text(out: Path, text: str) -> Path:
     return out
 
 
+def axis_numbers(table: Table) -> list[float]:
+    """What a reader needs beside the texels, in the order of AXIS, each a number that a 32-bit float holds."""
+    low, high = np.float32(table.theta_r_range).astype(float)  # the floats that the runtime would be given
+    e = float(np.float32(table.warp.e))
+    rows = [low, (table.height - 1) / (high - low), *table.domain]
+    warp = [e, *Warp(table.warp.name, e).scale(table.width), table.cell.limit]
+    shape = [table.width, table.height, int(table.warp.name == "quartic")]
+    return np.float32([*shape, *rows, *warp]).astype(float).tolist()
+
+
 def _identifier(name: str) -> str:
     return re.sub(r"\W", "_", name, flags=re.ASCII)
 
@@ -105,13 +116,11 @@ def _rows(table: Table) -> str:
 
 
 def _axis(table: Table) -> str:
-    low, high = np.float32(table.theta_r_range).astype(float)  # the floats that the runtime would be given
-    e = float(np.float32(table.warp.e))
-    numbers = [low, (table.height - 1) / (high - low), *table.domain]
-    constants = [e, *Warp(table.warp.name, e).scale(table.width), table.cell.limit]
+    numbers = axis_numbers(table)
+    before, after = numbers[AXIS.index("row_origin") : AXIS.index("e")], numbers[AXIS.index("e") :]
     return (
-        f"HAIRLUT_AXIS({_array(table)}, {table.width}, {table.height}, {', '.join(map(_literal, numbers))}, "
-        f"{WARPS[table.warp.name]}, {', '.join(map(_literal, constants))})"
+        f"HAIRLUT_AXIS({_array(table)}, {table.width}, {table.height}, {', '.join(map(_literal, before))}, "
+        f"{WARPS[table.warp.name]}, {', '.join(map(_literal, after))})"
     )
 
 

@@ -1,4 +1,4 @@
-"""The command hairlut: a module for each subcommand, with add_parser(subparsers) and run(args) -> exit code."""
+"""The command hairlut: a module a subcommand, with add_parser(subparsers) and run(args) -> exit code."""
 
 import argparse
 import importlib

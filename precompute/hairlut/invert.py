@@ -66,8 +66,8 @@ def _newton(
         inside = (step >= low[active]) & (step <= high[active])
         d[active] = np.where(inside, step, (low[active] + high[active]) / 2)
         moved = abs(d[active] - here)
-        done = (abs(excess) <= EPS * target[active]) | (moved <= EPS * here)
-        done |= high[active] - low[active] <= EPS * abs(start[active])
+        done = (abs(excess) <= 8 * EPS * target[active]) | (moved <= 2 * EPS * here)
+        done |= high[active] - low[active] <= 2 * EPS * (abs(start[active]) + here)
         active = active[~done]
     label = integral.rows.label(row[active[0]])
     raise HairlutError(

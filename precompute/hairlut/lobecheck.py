@@ -1,0 +1,106 @@
+"""What is wrong with a lobe from a model file: found before it is baked, and named where it happens."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .errors import HairlutError
+from .lobes import Array, Lobe
+
+ANGLES = 37
+POINTS = 513
+JUMP = 1e-3
+
+
+def check_lobe(lobe: Lobe, where: str) -> None:
+    """HairlutError naming the lobe, theta_r and the reason, if the lobe's density cannot be tabulated."""
+    theta_r = np.linspace(*lobe.theta_r_range, ANGLES)
+    x = _points(lobe)
+    values = _evaluate(lobe, where, x[None, :], theta_r[:, None])
+    for angle, row in zip(theta_r, values, strict=True):
+        _check_row(lobe, f"{where}: {lobe.name} at theta_r = {_both(angle)}", x, angle, row)
+    _check_elementwise(lobe, where, x, theta_r, values)
+
+
+def find_jump(lobe: Lobe, theta_r: float) -> float | None:
+    """Where the density at theta_r jumps by more than a thousandth of its maximum, if it does."""
+    angle = np.array([theta_r])
+    edges = np.linspace(*lobe.domain, POINTS)
+    low, high = edges[:-1], edges[1:]
+    top = None
+    for _ in range(40):
+        values = lobe.log_density(np.stack([low, (low + high) / 2, high]), angle)
+        top = values.max() if top is None else top
+        step = abs(np.diff(np.exp(values - top), axis=0))
+        upper = step[1] > step[0]
+        middle = (low + high) / 2
+        low, high = np.where(upper, middle, low), np.where(upper, high, middle)
+    left = step.max(axis=0)
+    return float(high[np.argmax(left)]) if left.max() > JUMP else None
+
+
+def _points(lobe: Lobe) -> Array:
+    """Points inside the domain, off its ends and its middle, where a formula may have a removable hole."""
+    low, high = lobe.domain
+    return low + (high - low) * (np.arange(POINTS) + 0.37) / POINTS
+
+
+def _both(theta_r: float) -> str:
+    return f"{np.degrees(theta_r):.4g} deg ({theta_r:.6g} rad)"
+
+
+def _evaluate(lobe: Lobe, where: str, x: Array, theta_r: Array) -> Array:
+    shape = np.broadcast_shapes(np.shape(x), np.shape(theta_r))
+    remedy = "the density is not vectorised: use NumPy's functions (np.exp, np.where), which take arrays"
+    try:
+        with np.errstate(all="ignore"):
+            values = np.asarray(lobe.log_density(x, theta_r), float)
+    except (TypeError, ValueError) as error:
+        raise HairlutError(f"{where}: {lobe.name}: {_first_line(error)}: {remedy}") from None
+    except Exception as error:  # whatever the user's function does wrong
+        raise HairlutError(f"{where}: {lobe.name}: {type(error).__name__}: {_first_line(error)}") from None
+    try:
+        return np.broadcast_to(values, shape)
+    except ValueError:
+        raise HairlutError(
+            f"{where}: {lobe.name}: a result of shape {values.shape} for arrays of shape {shape}: {remedy}"
+        ) from None
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]
+
+
+def _check_row(lobe: Lobe, place: str, x: Array, angle: float, row: Array) -> None:
+    if np.isnan(row).any():
+        k = int(np.argmax(np.isnan(row)))
+        given = getattr(lobe.log_density, "density", None)
+        value = np.broadcast_to(given(x[k : k + 1], np.array([angle])), (1,))[0] if given else np.nan
+        found = f"negative density {value:.6g}" if value < 0 else "the density is NaN"
+        raise HairlutError(f"{place}: {found} at x = {x[k]:.6g} rad")
+    if (row == np.inf).any():
+        raise HairlutError(f"{place}: the density is infinite at x = {x[int(np.argmax(row))]:.6g} rad")
+    if (row == -np.inf).all() and not _mass_near_breakpoints(lobe, angle):
+        raise HairlutError(f"{place}: no mass in the domain [{lobe.domain[0]:.6g}, {lobe.domain[1]:.6g}] rad")
+
+
+def _mass_near_breakpoints(lobe: Lobe, angle: float) -> bool:
+    at = np.array([angle])
+    points = np.ravel(lobe.breakpoints(at) if callable(lobe.breakpoints) else lobe.breakpoints)
+    inside = points[(points > lobe.domain[0]) & (points < lobe.domain[1])]
+    return inside.size > 0 and bool((lobe.log_density(inside, at) > -np.inf).any())
+
+
+def _check_elementwise(lobe: Lobe, where: str, x: Array, theta_r: Array, values: Array) -> None:
+    """A density that looks at its whole array, say for its maximum, has other values in a part of it."""
+    for j in (0, ANGLES // 3, ANGLES - 1):
+        k = np.array([POINTS // 5, (2 * POINTS) // 3])
+        part = _evaluate(lobe, where, x[k], theta_r[j : j + 1])
+        whole = values[j, k]
+        same = (part == whole) | np.isclose(part, whole, rtol=1e-9, atol=1e-9)
+        if not same.all():
+            raise HairlutError(
+                f"{where}: {lobe.name} at theta_r = {_both(theta_r[j])}: the density is not vectorised: "
+                f"log-density {whole[0]:.6g} at x = {x[k[0]]:.6g} among many points, {part[0]:.6g} among two: "
+                "each element of the result must depend on its own x and theta_r alone"
+            )

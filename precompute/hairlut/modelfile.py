@@ -1,0 +1,272 @@
+"""A model from a file: a hair's own three lobes, written in Python or TOML, or fitted by `hairlut fit`.
+
+A **Python file** defines `LOBES`, one of each name, in any order:
+
+    import numpy as np
+    from hairlut.modelfile import density, gaussian
+
+    LOBES = (
+        gaussian("direct_theta", mean=lambda theta_r: -theta_r - np.radians(3), sigma=0.2),
+        density("direct_phi", log_density=lambda phi, theta_r: 2 * np.cos(phi - np.pi) + 0 * theta_r),
+        gaussian("multiple_theta", mean=lambda theta_r: -0.4 * theta_r, sigma=0.5),
+    )
+    AZIMUTH = "difference"      # or "sum": whether phi is phi_i - phi_r (the default) or phi_i + phi_r
+
+Angles are in radians. Every function gets NumPy arrays that broadcast against each other and works element
+by element. `direct_theta` and `multiple_theta` are densities of theta_i in [-pi/2, pi/2], `direct_phi` of
+the relative azimuth in [0, 2 pi). None has to be normalised. precompute/examples/ holds such files.
+
+A **TOML file** gives Gaussians as numbers, one for each tabulated theta_r, or one number for all:
+
+    azimuth = "difference"
+    [direct_theta]
+    theta_r_deg = [-60, 0, 60]
+    sigma_rad = 0.29
+    shift_deg = [-5, -3, 1]     # mean of theta_i + theta_r; mean_deg would be the mean of theta_i itself
+    [direct_phi]                # likewise, and [multiple_theta]
+
+Each angle's name ends in `_deg` or `_rad`. Between the numbers a monotone cubic runs, which does not
+overshoot; outside them the nearest number holds.
+
+An **npz file** holds masses of cells, as `hairlut fit` writes them: for each lobe NAME the arrays NAME.edges,
+NAME.theta_r and NAME.mass of tabulated.TabulatedDensity, and the string `azimuth`.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from traceback import extract_tb
+from types import ModuleType
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from . import lobes
+from .errors import HairlutError
+from .lobecheck import check_lobe
+from .lobes import HALF_PI, MODELS, Lobe, Model
+from .tabulated import TabulatedDensity
+
+LOBE_NAMES = ("direct_theta", "direct_phi", "multiple_theta")
+AZIMUTHS = ("difference", "sum")
+SUFFIXES = (".py", ".toml", ".npz")
+
+_SPACE = {
+    "direct_theta": {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)},
+    "direct_phi": {"angle": "phi", "domain": (0.0, 2 * np.pi)},
+    "multiple_theta": {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)},
+}
+
+
+def _space(name: str) -> dict:
+    """What a lobe's name says; its model and azimuth are filled in when the file has been read."""
+    if name not in _SPACE:
+        raise HairlutError(f"lobe {name!r} is not known: expected one of {', '.join(LOBE_NAMES)}")
+    return {"model": "", "name": name, "azimuth": "none", **_SPACE[name]}
+
+
+def gaussian(name: str, mean, sigma, formula: str = "") -> Lobe:
+    """A Gaussian cut to the lobe's domain; mean and sigma: numbers (rad) or functions of theta_r."""
+    mean_of, sigma_of = _function(mean), _function(sigma)
+    return lobes.gaussian(
+        lambda theta_r: (mean_of(theta_r), sigma_of(theta_r)),
+        formula=formula or f"Gaussian of {_SPACE.get(name, {}).get('angle', name)}, from a model file",
+        **_space(name),
+    )
+
+
+def density(
+    name: str,
+    log_density: Callable | None = None,
+    density: Callable | None = None,
+    formula: str = "",
+    breakpoints: Sequence[float] | Callable = (),
+) -> Lobe:
+    """Any lobe, as log_density(x, theta_r) or density(x, theta_r), rad.
+
+    breakpoints: where it jumps, bends sharply or has a spike narrower than 1/2000 of the domain; numbers, or a
+    function that returns those at theta_r (R,) as (R, B).
+    """
+    if (log_density is None) == (density is None):
+        raise HairlutError(f"{name}: give either log_density or density, not both or neither")
+    return Lobe(
+        log_density=log_density or _logarithm(density),
+        formula=formula or "a density from a model file",
+        breakpoints=breakpoints if callable(breakpoints) else tuple(breakpoints),
+        **_space(name),
+    )
+
+
+def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
+    """A lobe given as masses of cells (tabulated.TabulatedDensity); the edges must span the domain."""
+    table = TabulatedDensity(edges, theta_r, mass, name)
+    low, high = _SPACE.get(name, _space(name))["domain"]
+    if abs(table.edges[0] - low) > 1e-9 or abs(table.edges[-1] - high) > 1e-9:
+        raise HairlutError(
+            f"{name}: the cells' edges run from {table.edges[0]:.6g} to {table.edges[-1]:.6g}, "
+            f"expected the domain's {low:.6g} to {high:.6g} rad"
+        )
+    text = f"{mass.shape[1]} measured cells at {len(table.theta_r)} theta_r, quantiles blended between them"
+    return density(name, log_density=table, formula=formula or text, breakpoints=table.breakpoints)
+
+
+def _function(value) -> Callable:
+    if callable(value):
+        return lambda theta_r: value(theta_r) + np.zeros_like(theta_r)
+    return lambda theta_r: np.full_like(theta_r, value, dtype=float)
+
+
+def _logarithm(density: Callable) -> Callable:
+    def log_density(x, theta_r):
+        value = np.asarray(density(x, theta_r), float)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(value < 0, np.nan, np.log(np.where(value < 0, np.nan, value)))
+
+    log_density.density = density
+    return log_density
+
+
+def find(text: str) -> Model:
+    """The built-in model of that name, or the checked model in that file; HairlutError if there is none."""
+    if text in MODELS:
+        return MODELS[text]
+    path = Path(text)
+    if path.suffix not in SUFFIXES or not path.is_file():
+        raise HairlutError(
+            f"model {text!r} is not known: expected one of {', '.join(MODELS)}, "
+            f"or a file ending in {', '.join(SUFFIXES)}"
+        )
+    return load(path)
+
+
+def load(path: Path) -> Model:
+    """Reads a model file and checks its lobes; the model takes the file's name."""
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", path.stem):
+        raise HairlutError(f"{path}: a model takes its file's name: expected letters, digits, '_', '-', '.'")
+    reader = {".py": _from_python, ".toml": _from_toml, ".npz": _from_npz}[path.suffix]
+    given, azimuth = reader(path)
+    model = assemble(path.stem, given, azimuth, str(path))
+    for lobe in model.lobes:
+        check_lobe(lobe, str(path))
+    return model
+
+
+def assemble(name: str, given: Sequence[Lobe], azimuth: str, where: str) -> Model:
+    """A model of the three lobes; HairlutError if one is missing or there twice."""
+    names = [lobe.name for lobe in given]
+    if sorted(names) != sorted(LOBE_NAMES):
+        raise HairlutError(
+            f"{where}: lobes {', '.join(names) or 'none'}: expected one each of {', '.join(LOBE_NAMES)}"
+        )
+    if azimuth not in AZIMUTHS:
+        raise HairlutError(f"{where}: azimuth {azimuth!r}: expected one of {', '.join(AZIMUTHS)}")
+    named = {
+        lobe.name: replace(lobe, model=name, azimuth=azimuth if lobe.angle == "phi" else "none")
+        for lobe in given
+    }
+    return Model(name, *(named[key] for key in LOBE_NAMES))
+
+
+# ---- Python
+
+
+def _from_python(path: Path) -> tuple[Sequence[Lobe], str]:
+    module = ModuleType(path.stem)
+    module.__file__ = str(path)
+    try:
+        exec(compile(path.read_text(), str(path), "exec"), module.__dict__)
+    except HairlutError as error:
+        raise HairlutError(f"{path}: {error}") from None
+    except Exception as error:  # whatever the user's file does wrong
+        raise HairlutError(f"{path}{_line(error, path)}: {type(error).__name__}: {error}") from None
+    given = getattr(module, "LOBES", None)
+    if not isinstance(given, (tuple, list)) or not all(isinstance(lobe, Lobe) for lobe in given):
+        raise HairlutError(f"{path}: expected LOBES, a tuple of gaussian(), density() or tabulated()")
+    return given, getattr(module, "AZIMUTH", "difference")
+
+
+def _line(error: Exception, path: Path) -> str:
+    if isinstance(error, SyntaxError):
+        return f":{error.lineno}"
+    lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]
+    return f":{lines[-1]}" if lines else ""
+
+
+# ---- TOML
+
+
+def _from_toml(path: Path) -> tuple[Sequence[Lobe], str]:
+    try:
+        document = tomllib.loads(path.read_text())
+    except tomllib.TOMLDecodeError as error:
+        raise HairlutError(f"{path}: {error}") from None
+    tables = {key: value for key, value in document.items() if isinstance(value, dict)}
+    given = [_gaussian_of_numbers(f"{path}: {name}", name, table) for name, table in tables.items()]
+    return given, document.get("azimuth", "difference")
+
+
+def _gaussian_of_numbers(where: str, name: str, table: dict) -> Lobe:
+    values = {key.rpartition("_")[0]: _radians(where, key, value) for key, value in table.items()}
+    if set(values) not in ({"theta_r", "sigma", "mean"}, {"theta_r", "sigma", "shift"}):
+        raise HairlutError(
+            f"{where}: found {', '.join(table) or 'nothing'}: expected theta_r_deg, sigma_deg "
+            "and either mean_deg or shift_deg (each may end in _rad instead)"
+        )
+    theta_r, sigma = np.atleast_1d(values["theta_r"]), values["sigma"]
+    if not (np.diff(theta_r) > 0).all():
+        raise HairlutError(f"{where}: theta_r must increase strictly")
+    key = "shift" if "shift" in values else "mean"
+    centre, width = (_through(f"{where}: {k}", theta_r, values[k]) for k in (key, "sigma"))
+    for row in np.flatnonzero(np.atleast_1d(sigma) <= 0):
+        raise HairlutError(f"{where} at theta_r = {np.degrees(theta_r[row]):.4g} deg: sigma must be above 0")
+    mean, of = ((lambda t: centre(t) - t), " + theta_r") if key == "shift" else (centre, "")
+    text = f"Gaussian of {_space(name)['angle']}; mean{of} and sigma by monotone cubics"
+    return gaussian(name, mean, width, f"{text} through {theta_r.size} values of theta_r")
+
+
+def _radians(where: str, key: str, value) -> np.ndarray | float:
+    unit = {"deg": np.pi / 180, "rad": 1.0}.get(key.rpartition("_")[2])
+    numbers = value if isinstance(value, list) else [value]
+    if unit is None or not numbers or not all(type(v) in (int, float) and np.isfinite(v) for v in numbers):
+        raise HairlutError(
+            f"{where}: {key}: expected a number or a list of numbers, and a name ending in _deg or _rad"
+        )
+    return np.array(value, float) * unit
+
+
+def _through(where: str, theta_r: np.ndarray, values: np.ndarray) -> Callable:
+    """A monotone cubic through the values, held outside their range."""
+    if values.ndim == 0 or theta_r.size == 1:
+        return _function(float(np.atleast_1d(values)[0]))
+    if values.shape != theta_r.shape:
+        raise HairlutError(
+            f"{where}: {values.size} numbers for {theta_r.size} theta_r: expected one each, or one for all"
+        )
+    cubic = PchipInterpolator(theta_r, values)
+    return lambda t: cubic(np.clip(t, theta_r[0], theta_r[-1]))
+
+
+# ---- npz
+
+
+def _from_npz(path: Path) -> tuple[Sequence[Lobe], str]:
+    with np.load(path, allow_pickle=False) as arrays:
+        missing = [
+            f"{n}.{k}" for n in LOBE_NAMES for k in ("edges", "theta_r", "mass") if f"{n}.{k}" not in arrays
+        ]
+        if missing:
+            raise HairlutError(
+                f"{path}: array {missing[0]} is missing: expected a file that `hairlut fit` wrote"
+            )
+        try:
+            given = [
+                tabulated(n, arrays[f"{n}.edges"], arrays[f"{n}.theta_r"], arrays[f"{n}.mass"])
+                for n in LOBE_NAMES
+            ]
+        except HairlutError as error:
+            raise HairlutError(f"{path}: {error}") from None
+        return given, str(arrays["azimuth"]) if "azimuth" in arrays else "difference"

@@ -1,0 +1,133 @@
+"""A lobe known as masses of cells at some viewer angles: measured, simulated, or evaluated on a grid.
+
+Along x, each row's cumulative mass at the cells' edges is joined by a monotone cubic, so that every cell
+keeps its mass and the density is continuous. Between two rows the *quantiles* are blended, x(u) = (1-t)
+x_j(u) + t x_{j+1}(u): a peak that moves with theta_r moves, where a blend of the densities would make two
+peaks of it. A baked table blends its rows in the same way. The density of the blend is its derivative, 1/q
+= (1-t)/p_j + t/p_{j+1}, each density taken at its own row's quantile. Outside the range of the rows the
+nearest row holds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+from .errors import HairlutError
+
+FLOOR = 1e-4
+"""Share of each row's mass that is spread evenly: where data have nothing, a renderer may have something."""
+
+MERGE = 1e-4, 1e-8
+"""Knots of a blended row that are closer than this part of the domain, or of the mass, are one."""
+
+
+class TabulatedDensity:
+    """log_density(x, theta_r) of rows of cell masses, and its breakpoints(theta_r).
+
+    edges: (n+1,) increasing, rad; the first and last are the ends of the lobe's domain.
+    theta_r: (J,) increasing, rad. mass: (J, n), not negative, any positive sum per row.
+    """
+
+    def __init__(self, edges, theta_r, mass, name: str = "tabulated lobe", floor: float = FLOOR):
+        edges, theta_r, mass = (np.asarray(a, np.float64) for a in (edges, theta_r, mass))
+        _check(edges, theta_r, mass, name)
+        self.edges, self.theta_r = edges, theta_r
+        even = np.diff(edges) / (edges[-1] - edges[0])
+        share = (1 - floor) * mass / mass.sum(axis=1, keepdims=True) + floor * even
+        self._u = np.concatenate([np.zeros((len(theta_r), 1)), np.cumsum(share, axis=1)], axis=1)
+        self._u /= self._u[:, -1:]
+        self._cubics = [PchipInterpolator(edges, u) for u in self._u]
+        self._rows: dict[float, CubicHermiteSpline] = {}
+
+    def __call__(self, x, theta_r):
+        """Log-density at x and theta_r (rad, broadcast against each other); -inf outside the domain."""
+        angles, which = np.unique(np.asarray(theta_r, np.float64), return_inverse=True)
+        x, which = np.broadcast_arrays(np.asarray(x, np.float64), which.reshape(np.shape(theta_r)))
+        density = np.zeros(x.shape)
+        inside = (x >= self.edges[0]) & (x <= self.edges[-1])
+        for k, angle in enumerate(angles):
+            here = inside & (which == k)
+            density[here] = self._density(float(angle), x[here])
+        with np.errstate(divide="ignore"):
+            return np.log(density)
+
+    def _density(self, theta_r: float, x: np.ndarray) -> np.ndarray:
+        lowest = 1e-9 / (self.edges[-1] - self.edges[0])
+        return np.maximum(self.row(theta_r)(x, 1), lowest)
+
+    def breakpoints(self, theta_r) -> np.ndarray:
+        """(R, B) knots of the rows at theta_r (R,), filled up with the domain's end."""
+        knots = [self.row(float(angle)).x for angle in np.ravel(theta_r)]
+        filled = np.full((len(knots), max(map(len, knots))), self.edges[-1])
+        for row, x in zip(filled, knots, strict=True):
+            row[: len(x)] = x
+        return filled
+
+    def row(self, theta_r: float) -> CubicHermiteSpline:
+        """The cumulative mass of the row at theta_r as a piecewise cubic of x."""
+        if theta_r not in self._rows:
+            self._rows[theta_r] = self._blend(theta_r)
+        return self._rows[theta_r]
+
+    def _blend(self, theta_r: float):
+        at = float(np.interp(theta_r, self.theta_r, np.arange(len(self.theta_r))))
+        j, t = int(at), at - int(at)
+        if t == 0.0:
+            return self._cubics[j]
+        u = np.union1d(self._u[j], self._u[j + 1])
+        u = u[np.append(True, np.diff(u) > MERGE[1])]
+        u[-1] = 1.0
+        low, high = (_quantiles(self._cubics[k], self._u[k], self.edges, u) for k in (j, j + 1))
+        x = (1 - t) * low + t * high
+        x[0], x[-1] = self.edges[0], self.edges[-1]
+        with np.errstate(divide="ignore"):  # a density of zero at an edge
+            density = 1 / (
+                (1 - t) / np.maximum(self._cubics[j](low, 1), 0)
+                + t / np.maximum(self._cubics[j + 1](high, 1), 0)
+            )
+        kept = np.append(np.diff(x) > MERGE[0] * (x[-1] - x[0]), True)
+        kept[0] = True
+        return _monotone(x[kept], u[kept], density[kept])
+
+
+def _quantiles(cubic: PchipInterpolator, u_edges: np.ndarray, edges: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """The angles below which the masses u lie; by bisection, as a cell's cubic may be flat at its ends."""
+    cell = np.clip(np.searchsorted(u_edges, u, side="right") - 1, 0, len(edges) - 2)
+    low, high = edges[cell], edges[cell + 1]
+    for _ in range(52):
+        middle = (low + high) / 2
+        below = cubic(middle) < u
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return (low + high) / 2
+
+
+def _monotone(x: np.ndarray, u: np.ndarray, density: np.ndarray) -> CubicHermiteSpline:
+    """The cubic through (x, u) with these slopes, lowered where it would turn back (Fritsch and Carlson)."""
+    secant = np.diff(u) / np.diff(x)
+    bound = 3 * np.minimum(np.append(secant[0], secant), np.append(secant, secant[-1]))
+    return CubicHermiteSpline(x, u, np.minimum(density, bound))
+
+
+def _check(edges, theta_r, mass, name: str) -> None:
+    if (
+        edges.ndim != 1
+        or theta_r.ndim != 1
+        or mass.shape != (len(theta_r), len(edges) - 1)
+        or not len(theta_r)
+    ):
+        raise HairlutError(
+            f"{name}: mass has shape {mass.shape}, expected (number of theta_r, number of edges - 1) "
+            f"= ({theta_r.size}, {edges.size - 1})"
+        )
+    for what, values in (("edges", edges), ("theta_r", theta_r)):
+        if not (np.isfinite(values).all() and (np.diff(values) > 0).all()):
+            raise HairlutError(f"{name}: {what} must be finite and increase strictly")
+    for j, row in enumerate(mass):
+        place = f"{name} at theta_r = {np.degrees(theta_r[j]):.4g} deg"
+        if not np.isfinite(row).all():
+            raise HairlutError(f"{place}: the mass of a cell is not a finite number")
+        if (row < 0).any():
+            raise HairlutError(f"{place}: negative density in cell {int(np.argmin(row))}")
+        if row.sum() <= 0:
+            raise HairlutError(f"{place}: no mass in the domain")

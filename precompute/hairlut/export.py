@@ -16,6 +16,7 @@ from .warp import Warp
 TABLES = ("direct_theta", "direct_phi", "multiple_theta")
 AZIMUTHS = {"sum": "HAIRLUT_AZIMUTH_SUM", "difference": "HAIRLUT_AZIMUTH_DIFFERENCE"}
 AXIS = ("columns", "height", "warp", "row_origin", "row_scale", "low", "high", "e", "f0", "k", "limit")
+PIVOTS = 16  # runtime/src/internal.h, HAIRLUT_PIVOTS
 WARPS = {"quartic": "HAIRLUT_WARP_QUARTIC", "uniform": "HAIRLUT_WARP_UNIFORM"}
 
 
@@ -105,11 +106,22 @@ def _literal(x: float) -> str:
     return f"{text}f" if "." in text or "e" in text else f"{text}.0f"
 
 
+def _pivots(texels: np.ndarray) -> np.ndarray:
+    """(H, PIVOTS) every step-th texel of each row, by which the runtime finds the cell of an angle."""
+    height, width = texels.shape
+    step = -(-(width - 1) // PIVOTS)
+    pivots = np.full((height, PIVOTS), np.finfo(np.float32).max, np.float32)
+    inner = texels[:, step : width - 1 : step]
+    pivots[:, : inner.shape[1]] = inner
+    return pivots
+
+
 def _rows(table: Table) -> str:
-    rows = padded(table.texels).astype(np.float32)
+    """Rows as the runtime stores them (runtime/src/internal.h, hairlut_axis)."""
+    rows = np.concatenate([padded(table.texels).astype(np.float32), _pivots(table.texels)], axis=1)
     lines = [",".join(map(_literal, row)) for row in rows]
     return (
-        f"static const float {_array(table)}[{table.height} * {table.width + 2}] = {{\n"
+        f"static const float {_array(table)}[{table.height} * ({table.width} + HAIRLUT_ROW_EXTRA)] = {{\n"
         + ",\n".join(lines)
         + "};"
     )

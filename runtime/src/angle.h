@@ -7,16 +7,26 @@
 
 static const float hairlut_two_pi = 6.28318548f;
 static const float hairlut_pi = 3.14159274f;
+static const float hairlut_inverse_two_pi = 0.159154943f;
 
 static inline int hairlut_is_finite(float x)
 {
     return fabsf(x) <= FLT_MAX;
 }
 
-/* phi modulo 2 pi, from [low, low + 2 pi). What no float resolves (phi beyond 2^24, infinity, NaN) gives low. */
+/* The largest integer not above x. From 2^23 on every float is one. NaN gives NaN. */
+static inline float hairlut_floor(float x)
+{
+    const float n = fabsf(x) < 8388608.0f ? (float)(int)x : x;
+    return n - (float)(n > x);
+}
+
+/* phi modulo 2 pi, from [low, low + 2 pi). 2 pi is subtracted in two parts, of which the first multiplies without
+ * rounding. What no float resolves (phi beyond 2^24, infinity, NaN) gives low. */
 static inline float hairlut_wrap(float phi, float low)
 {
-    const float r = phi - hairlut_two_pi * floorf((phi - low) / hairlut_two_pi);
+    const float n = hairlut_floor((phi - low) * hairlut_inverse_two_pi);
+    const float r = (phi - n * 6.28125f) - n * 1.93530718e-3f;
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 

@@ -9,6 +9,7 @@
 #define HAIRLUT_AXIS_H
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "internal.h"
 
@@ -34,20 +35,29 @@ typedef struct hairlut_draw {
     float pdf;
 } hairlut_draw;
 
+/* The larger and the smaller of two numbers; NaN in x gives y. Each is one instruction. */
+static inline float hairlut_max(float x, float y)
+{
+    return x > y ? x : y;
+}
+
+static inline float hairlut_min(float x, float y)
+{
+    return x < y ? x : y;
+}
+
 /* NaN gives low. */
 static inline float hairlut_clamp(float x, float low, float high)
 {
-    x = x > low ? x : low;
-    return x < high ? x : high;
+    return hairlut_min(hairlut_max(x, low), high);
 }
 
 static inline hairlut_rows hairlut_axis_rows(const hairlut_axis *axis, float theta_r)
 {
-    const float last = (float)(axis->height - 1);
-    const float r = hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, 0.0f, last);
+    const float r = hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, 0.0f, axis->row_last);
     int j = (int)r;
-    j = j < axis->height - 2 ? j : axis->height - 2;
-    const int stride = axis->columns + 2;
+    j -= j > axis->height - 2;
+    const int stride = axis->columns + HAIRLUT_ROW_EXTRA;
     const hairlut_rows rows = {axis->rows + (size_t)j * (size_t)stride, stride, r - (float)j};
     return rows;
 }
@@ -63,50 +73,47 @@ static inline float hairlut_blend_width(float a, float b, float t)
     return (1.0f - t) * a + t * b;
 }
 
-/* The blended texel of knot i. */
-static inline float hairlut_texel(const hairlut_rows *rows, int i)
-{
-    const float *a = rows->a + i + 1;
-    return hairlut_blend(a[0], a[rows->stride], rows->t);
-}
-
 /* Differences are taken in each row before they are blended: neighbouring texels subtract without rounding. */
 static inline hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, const hairlut_rows *rows, int i)
 {
     const float *a = rows->a + i;
     const float *b = a + rows->stride;
     const float t = rows->t;
-    const float before = hairlut_blend_width(a[1] - a[0], b[1] - b[0], t);
     const float d = hairlut_blend_width(a[2] - a[1], b[2] - b[1], t);
-    const float after = hairlut_blend_width(a[3] - a[2], b[3] - b[2], t);
+    /* before - after, the widths of the neighbouring cells */
+    const float bend = hairlut_blend_width((a[1] - a[0]) - (a[3] - a[2]), (b[1] - b[0]) - (b[3] - b[2]), t);
     const float bound = axis->limit * d;
-    const hairlut_cell cell = {hairlut_blend(a[1], b[1], t), d, hairlut_clamp(0.25f * (before - after), -bound, bound)};
+    const hairlut_cell cell = {hairlut_blend(a[1], b[1], t), d, hairlut_clamp(0.25f * bend, -bound, bound)};
     return cell;
 }
 
-/* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */
+static inline float hairlut_cell_angle(const hairlut_cell *cell, float f)
+{
+    return cell->x0 + f * (cell->d + cell->c * (1.0f - f));
+}
+
+static inline float hairlut_cell_slope(const hairlut_cell *cell, float f)
+{
+    return cell->d + cell->c * (1.0f - 2.0f * f);
+}
+
+/* du/dcolumn where the warp's curve has the value y. */
+static inline float hairlut_axis_du(const hairlut_axis *axis, float y)
+{
+    return axis->warp == HAIRLUT_WARP_QUARTIC ? 4.0f * axis->k * (y * (y * y)) : axis->k;
+}
+
+/* u to column. The fold at u = 1/2 keeps the relative precision of both tails, and mirrors without a branch: u is as
+ * good as random, and so would be the branch. */
 static inline hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
 {
-    u = hairlut_clamp(u, 0.0f, 1.0f);
-    const float m = u <= 0.5f ? u : 1.0f - u;
-    float c, du;
-    if (axis->warp == HAIRLUT_WARP_QUARTIC) {
-        const float y = sqrtf(sqrtf(m + axis->e));
-        c = (y - axis->f0) / axis->k;
-        du = 4.0f * axis->k * y * y * y;
-    } else {
-        c = m / axis->k;
-        du = axis->k;
-    }
-    const int last = axis->columns - 2;
-    c = hairlut_clamp(c, 0.0f, 0.5f * (float)(axis->columns - 1));
-    int i = (int)c;
-    float f = c - (float)i;
-    if (u > 0.5f) {
-        i = last - i;
-        f = 1.0f - f;
-    }
-    const hairlut_knot knot = {i, f, du};
+    const float m = hairlut_max(hairlut_min(u, 1.0f - u), 0.0f);
+    const float y = axis->warp == HAIRLUT_WARP_QUARTIC ? sqrtf(sqrtf(m + axis->e)) : m;
+    const float c = hairlut_clamp((y - axis->f0) * axis->inverse_k, 0.0f, axis->middle);
+    const int upper = u > 0.5f;
+    const int i = (int)c;
+    const float f = c - (float)i;
+    const hairlut_knot knot = {abs((-upper & (axis->columns - 2)) - i), fabsf((float)upper - f), hairlut_axis_du(axis, y)};
     return knot;
 }
 
@@ -123,17 +130,7 @@ static inline float hairlut_from_high(const hairlut_axis *axis, int i, float f)
 
 static inline float hairlut_fold(const hairlut_axis *axis, int i, float f)
 {
-    const float low = hairlut_from_low(i, f), high = hairlut_from_high(axis, i, f);
-    return low <= high ? low : high;
-}
-
-/* du/dcolumn at a place given by cell and fraction. */
-static inline float hairlut_axis_du(const hairlut_axis *axis, int i, float f)
-{
-    if (axis->warp != HAIRLUT_WARP_QUARTIC)
-        return axis->k;
-    const float y = axis->f0 + axis->k * hairlut_fold(axis, i, f);
-    return 4.0f * axis->k * y * y * y;
+    return hairlut_min(hairlut_from_low(i, f), hairlut_from_high(axis, i, f));
 }
 
 /* Column to u. */
@@ -148,16 +145,32 @@ static inline float hairlut_axis_u(const hairlut_axis *axis, int i, float f)
     return hairlut_from_low(i, f) <= hairlut_from_high(axis, i, f) ? m : 1.0f - m;
 }
 
-/* The cell whose blended texels enclose x. */
+/* How many of the n blended texels from a on are at most x; n is rounded up to a multiple of 4. A count has no branch
+ * that depends on x, and compilers turn the four lanes into a vector. */
+static inline int hairlut_count(const float *a, int stride, float t, float x, int n)
+{
+    int lane[4] = {0, 0, 0, 0};
+    for (int k = 0; k < n; k += 4)
+        for (int l = 0; l < 4; ++l)
+            lane[l] += hairlut_blend(a[k + l], a[stride + k + l], t) <= x;
+    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+/* The cell whose blended texels enclose x: the pivots narrow it down to pivot_step cells, halving to at most 16, a count
+ * to one. What the last count takes in beyond its block (never beyond the row: the pivots lie there) is taken back. */
 static inline int hairlut_axis_find(const hairlut_axis *axis, const hairlut_rows *rows, float x)
 {
-    int i = 0;
-    for (int n = axis->columns - 1; n > 1;) {
-        const int half = n / 2;
-        i += hairlut_texel(rows, i + half) <= x ? half : 0;
-        n -= half;
+    const float t = rows->t;
+    const int stride = rows->stride;
+    int cells = axis->pivot_step;
+    int first = cells * hairlut_count(rows->a + axis->columns + 2, stride, t, x, HAIRLUT_PIVOTS);
+    for (; cells > HAIRLUT_PIVOTS; cells -= cells / 2) {
+        const float *a = rows->a + first + cells / 2 + 1;
+        first += hairlut_blend(a[0], a[stride], t) <= x ? cells / 2 : 0;
     }
-    return i;
+    int count = hairlut_count(rows->a + first + 2, stride, t, x, cells - 1);
+    count = count < cells - 1 ? count : cells - 1;
+    return first + count < axis->columns - 2 ? first + count : axis->columns - 2;
 }
 
 /* The fraction of a cell at which x lies; *slope gets dx/df there. The root of the quadratic is that slope. */
@@ -165,9 +178,8 @@ static inline float hairlut_cell_solve(const hairlut_cell *cell, float x, float 
 {
     const float d = hairlut_clamp(x - cell->x0, 0.0f, cell->d);
     const float s = cell->d + cell->c;
-    const float square = s * s - 4.0f * cell->c * d;
-    *slope = sqrtf(square > 0.0f ? square : 0.0f);
-    return hairlut_clamp(2.0f * d / (s + *slope), 0.0f, 1.0f);
+    *slope = sqrtf(hairlut_max(s * s - 4.0f * cell->c * d, 0.0f));
+    return hairlut_min(2.0f * d / (s + *slope), 1.0f);
 }
 
 static inline hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float theta_r, float u)
@@ -175,10 +187,8 @@ static inline hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float t
     const hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
     const hairlut_knot knot = hairlut_axis_knot(axis, u);
     const hairlut_cell cell = hairlut_axis_cell(axis, &rows, knot.i);
-    const float f = knot.f;
-    const float x = cell.x0 + f * (cell.d + cell.c * (1.0f - f));
-    const float slope = cell.d + cell.c * (1.0f - 2.0f * f);
-    const hairlut_draw draw = {hairlut_clamp(x, axis->low, axis->high), knot.du / slope};
+    const hairlut_draw draw = {hairlut_clamp(hairlut_cell_angle(&cell, knot.f), axis->low, axis->high),
+                               knot.du / hairlut_cell_slope(&cell, knot.f)};
     return draw;
 }
 
@@ -191,7 +201,7 @@ static inline float hairlut_axis_pdf(const hairlut_axis *axis, float theta_r, fl
     const hairlut_cell cell = hairlut_axis_cell(axis, &rows, i);
     float slope;
     const float f = hairlut_cell_solve(&cell, x, &slope);
-    return hairlut_axis_du(axis, i, f) / slope;
+    return hairlut_axis_du(axis, axis->f0 + axis->k * hairlut_fold(axis, i, f)) / slope;
 }
 
 static inline float hairlut_axis_invert(const hairlut_axis *axis, float theta_r, float x)

@@ -2,29 +2,45 @@
 #ifndef HAIRLUT_INTERNAL_H
 #define HAIRLUT_INTERNAL_H
 
+#include <float.h>
+
 #include "hairlut.h"
 
-/* A table ready for sampling. Rows are padded: rows[j*(columns+2)] .. hold one texel before the first and one after the
- * last, so that the four texels around any cell are adjacent (luts/FORMAT.md, "Padding"). */
+enum {
+    HAIRLUT_PIVOTS = 16,
+    HAIRLUT_ROW_EXTRA = 2 + HAIRLUT_PIVOTS /* floats of a stored row that are not texels */
+};
+
+/* A table ready for sampling. Row j starts at rows[j*(columns + HAIRLUT_ROW_EXTRA)] and holds: one texel before the
+ * first, the texels, one after the last, so that the four texels around any cell are adjacent (luts/FORMAT.md,
+ * "Padding"); then the pivots of the search for a cell: pivot k is texel (k+1)*pivot_step, or HAIRLUT_NO_PIVOT where
+ * that is beyond the last cell. */
 typedef struct hairlut_axis {
     const float *rows;
     int columns;
     int height;
+    int pivot_step; /* cells between two pivots: (columns - 1) / HAIRLUT_PIVOTS, rounded up */
+    int warp;       /* hairlut_warp */
     float row_origin; /* theta_r of row 0 */
     float row_scale;  /* rows per radian of theta_r */
+    float row_last;   /* height - 1 */
     float low;        /* the domain */
     float high;
-    int warp;         /* hairlut_warp */
-    float e;          /* quartic warp: y = (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column */
+    float e; /* quartic warp: y = (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column */
     float f0;
-    float k;          /* uniform warp: m = k c */
-    float limit;      /* of a cell's curvature, relative to its width */
+    float k; /* uniform warp: m = k c */
+    float inverse_k;
+    float middle; /* the largest folded column: (columns - 1) / 2 */
+    float limit;  /* of a cell's curvature, relative to its width */
 } hairlut_axis;
 
-/* One initialiser for compiled-in tables, so that generated code does not depend on the order of the fields. */
+#define HAIRLUT_NO_PIVOT FLT_MAX
+
+/* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. */
 #define HAIRLUT_AXIS(rows_, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_, limit_)      \
     {                                                                                                                 \
-        rows_, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_, limit_                    \
+        rows_, columns_, height_, ((columns_) - 2 + HAIRLUT_PIVOTS) / HAIRLUT_PIVOTS, warp_, row_origin_, row_scale_, \
+            (float)((height_) - 1), low_, high_, e_, f0_, k_, 1.0f / (k_), 0.5f * (float)((columns_) - 1), limit_     \
     }
 
 struct hairlut_model {

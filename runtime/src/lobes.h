@@ -5,8 +5,6 @@
 #include "angle.h"
 #include "axis.h"
 
-static const float hairlut_uniform_azimuth = 0.159154943f; /* 1 / (2 pi): multiple scattering has no azimuth */
-
 /* NaN anywhere, or an infinite azimuth: the density is 0. */
 static inline int hairlut_known(float theta_r, float phi_r, float a, float b)
 {

@@ -1,5 +1,6 @@
 /* Models from tables in memory: what a table must fulfil, and the padded copy that the kernels read. */
 #include <math.h>
+#include <string.h>
 
 #include "allocator.h"
 #include "internal.h"
@@ -99,41 +100,39 @@ hairlut_result hairlut_validate(const hairlut_table *table, char *message)
     return result;
 }
 
-/* The texels beyond both ends, such that a blended end cell takes the curvature d - d_neighbour. */
-static void pad_row(float *padded, const float *row, int width)
+/* A row as it is stored: the texels beyond both ends are such that a blended end cell takes the curvature
+ * d - d_neighbour. */
+static void store_row(float *stored, const float *row, int width, int pivot_step)
 {
-    for (int i = 0; i < width; ++i)
-        padded[i + 1] = row[i];
+    memcpy(stored + 1, row, (size_t)width * sizeof *row);
     const double first = row[0], second = row[1], third = row[2];
     const double last = row[width - 1], last1 = row[width - 2], last2 = row[width - 3];
-    padded[0] = (float)(first - 4.0 * (second - first) + 3.0 * (third - second));
-    padded[width + 1] = (float)(last + 4.0 * (last - last1) - 3.0 * (last1 - last2));
+    stored[0] = (float)(first - 4.0 * (second - first) + 3.0 * (third - second));
+    stored[width + 1] = (float)(last + 4.0 * (last - last1) - 3.0 * (last1 - last2));
+    for (int k = 0; k < HAIRLUT_PIVOTS; ++k) {
+        const int i = (k + 1) * pivot_step;
+        stored[width + 2 + k] = i <= width - 2 ? row[i] : HAIRLUT_NO_PIVOT;
+    }
 }
 
-static size_t padded_floats(const hairlut_table *t)
+static size_t stored_floats(const hairlut_table *t)
 {
-    return (size_t)t->height * (size_t)(t->width + 2);
+    return (size_t)t->height * (size_t)(t->width + HAIRLUT_ROW_EXTRA);
 }
 
-/* Fills an axis whose padded rows go to `rows`; returns the end of what it filled. */
+/* Fills an axis whose rows go to `rows`; returns the end of what it filled. */
 static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *rows)
 {
-    for (int j = 0; j < t->height; ++j)
-        pad_row(rows + (size_t)j * (size_t)(t->width + 2), t->texels + (size_t)j * (size_t)t->width, t->width);
     const hairlut_warp_scale scale = hairlut_scale_warp(t->warp, t->warp_e, t->width);
-    axis->rows = rows;
-    axis->columns = t->width;
-    axis->height = t->height;
-    axis->row_origin = t->theta_r_min;
-    axis->row_scale = (float)((t->height - 1) / ((double)t->theta_r_max - (double)t->theta_r_min));
-    axis->low = t->domain_min;
-    axis->high = t->domain_max;
-    axis->warp = (int)t->warp;
-    axis->e = (float)scale.e;
-    axis->f0 = (float)scale.f0;
-    axis->k = (float)scale.k;
-    axis->limit = t->cell_limit;
-    return rows + padded_floats(t);
+    const float row_scale = (float)((t->height - 1) / ((double)t->theta_r_max - (double)t->theta_r_min));
+    const hairlut_axis filled =
+        HAIRLUT_AXIS(rows, t->width, t->height, t->theta_r_min, row_scale, t->domain_min, t->domain_max, (int)t->warp,
+                     (float)scale.e, (float)scale.f0, (float)scale.k, t->cell_limit);
+    *axis = filled;
+    for (int j = 0; j < t->height; ++j)
+        store_row(rows + (size_t)j * (size_t)(t->width + HAIRLUT_ROW_EXTRA), t->texels + (size_t)j * (size_t)t->width,
+                  t->width, axis->pivot_step);
+    return rows + stored_floats(t);
 }
 
 static hairlut_result validate_all(const hairlut_model_desc *desc, char *message)
@@ -178,8 +177,8 @@ hairlut_result hairlut_model_create(const hairlut_model_desc *desc, const hairlu
         result = validate_all(desc, message);
     if (result != HAIRLUT_OK)
         return result;
-    const size_t floats = padded_floats(&desc->direct_theta) + padded_floats(&desc->direct_phi)
-                          + padded_floats(&desc->multiple_theta);
+    const size_t floats = stored_floats(&desc->direct_theta) + stored_floats(&desc->direct_phi)
+                          + stored_floats(&desc->multiple_theta);
     /* one block: the struct, whose size is a multiple of a float's, then the rows */
     void *memory;
     result = hairlut_allocate(&a, sizeof(hairlut_model) + floats * sizeof(float), &memory, message);

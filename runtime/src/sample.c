@@ -13,7 +13,7 @@ hairlut_sample hairlut_sample_multiple(const hairlut_model *model, float theta_r
 {
     const hairlut_draw theta = hairlut_axis_sample(&model->multiple_theta, theta_r, u_theta);
     const float phi = hairlut_wrap(hairlut_two_pi * hairlut_clamp(u_phi, 0.0f, 1.0f) - hairlut_pi, -hairlut_pi);
-    const float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_uniform_azimuth : 0.0f;
+    const float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_inverse_two_pi : 0.0f;
     return hairlut_finish(theta.x, phi, pdf);
 }
 
@@ -29,7 +29,7 @@ float hairlut_pdf_multiple(const hairlut_model *model, float theta_r, float phi_
 {
     if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
         return 0.0f;
-    return hairlut_axis_pdf(&model->multiple_theta, theta_r, theta_i) * hairlut_uniform_azimuth;
+    return hairlut_axis_pdf(&model->multiple_theta, theta_r, theta_i) * hairlut_inverse_two_pi;
 }
 
 void hairlut_invert_direct(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i, float u[2])
@@ -43,7 +43,7 @@ void hairlut_invert_multiple(const hairlut_model *model, float theta_r, float ph
 {
     (void)phi_r;
     u[0] = hairlut_axis_invert(&model->multiple_theta, theta_r, theta_i);
-    u[1] = (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_uniform_azimuth;
+    u[1] = (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_inverse_two_pi;
 }
 
 float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import HairlutError
-from .integrate import integrate, rows_of_lobe
+from .integrate import Integral, integrate, rows_of_lobe
 from .interpolant import Cell
 from .invert import invert
 from .lobes import Array, Lobe
@@ -62,18 +62,16 @@ def check_size(width: int, height: int) -> None:
         )
 
 
-def quantiles(lobe: Lobe, theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
-    """(angles (R, K) in double precision, log_mass (R,)) of the tails m, upper (K,) as in invert.invert."""
-    integral = integrate(rows_of_lobe(lobe, theta_r))
-    return invert(integral, m, upper), integral.log_mass
-
-
 def bake_table(lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell) -> Table:
     """Integrates, normalises, inverts and rounds a lobe once; HairlutError if a cell comes out flat."""
     check_size(width, height)
     theta_r = row_angles(lobe.theta_r_range, height)
-    angles, log_mass = quantiles(lobe, theta_r, *warp.knots(width))
-    texels = angles.astype(np.float32)
+    return tabulate(lobe, theta_r, integrate(rows_of_lobe(lobe, theta_r)), width, warp, cell)
+
+
+def tabulate(lobe: Lobe, theta_r: Array, integral: Integral, width: int, warp: Warp, cell: Cell) -> Table:
+    """The table whose rows, at theta_r (height,), have been integrated already."""
+    texels = invert(integral, *warp.knots(width)).astype(np.float32)
     _refuse_flat_cells(lobe, theta_r, texels, warp)
     return Table(
         lobe.model,
@@ -86,7 +84,7 @@ def bake_table(lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell) -> T
         warp,
         cell,
         texels,
-        log_mass,
+        integral.log_mass,
     )
 
 

@@ -1,0 +1,216 @@
+"""What a table costs a Monte Carlo estimate, measured against the exact lobe.
+
+With f the exact, normalised density of a lobe at one theta_r, and q the density that the table samples there,
+the weight w = f/q is what a sample counts. The table's own coordinate makes every integral one over u: q dx =
+du, so
+
+    relative variance   V  = E_q[w^2] - 1 = integral (w - 1)^2 du - 2 lost
+    total variation     TV = (integral |w - 1| du + lost) / 2
+    lost mass              = mass of f that q never reaches
+    heavy                  = probability, under q, of a weight above HEAVY
+
+The form with (w - 1)^2 loses no digits where V is tiny. Integrals are Gauss-Legendre sums over the cells of
+the table; a cell in which the integrand's Legendre coefficients have not died out is bisected until they
+have. The table is taken as its texels in double precision: rounding inside a renderer's own arithmetic is a
+test of the runtime, not of the table.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .integrate import Integral, integrate, rows_of_lobe
+from .interpolant import Cells, cells, place
+from .invert import invert
+from .lobes import Array, Lobe
+from .table import Table
+
+HEAVY = 4.0
+BETWEEN = 3
+ORDER = 8
+MAX_DEPTH = 48
+CHUNK = 400_000  # points worked on at once
+INNER = 2.0**-12  # the inner range of u is [INNER, 1 - INNER], the whole one [OUTER, 1 - OUTER]
+OUTER = 2.0**-24
+
+_nodes, _weights = np.polynomial.legendre.leggauss(ORDER)
+NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
+# What ORDER points, weighted, give as the coefficients of the two highest Legendre polynomials that they
+# resolve.
+LAST_TWO = np.polynomial.legendre.legvander(_nodes, ORDER - 1)[:, -2:] * (2 * np.arange(ORDER - 2, ORDER) + 1)
+# Coefficients allowed to remain. The sum is exact to twice their degree, and its error is about their square.
+OWN_ERROR = 1e-2
+CELL_ERROR = 1e-4  # or this part of a row's variance, shared by its cells
+ROUNDING = 1e-18
+
+
+class Exact:
+    """The normalised lobe at theta_r (R,)."""
+
+    def __init__(self, lobe: Lobe, theta_r: Array):
+        self.lobe = lobe
+        self.theta_r = theta_r
+        self.integral: Integral = integrate(rows_of_lobe(lobe, theta_r))
+
+    def density(self, x: Array, row: Array) -> Array:
+        """(n, k) density at x (n, k), per rad, in the rows row (n,)."""
+        inside = np.clip(x, *self.lobe.domain)  # a texel may round to just outside
+        return np.exp(self.integral.rows.log_density(inside, row) - self.integral.log_mass[row][:, None])
+
+    def quantiles(self, m: Array, upper: Array) -> Array:
+        """(R, K) angles of the tails m, upper (K,)."""
+        return invert(self.integral, m, upper)
+
+    def lost(self, row: Array, low: Array, high: Array) -> Array:
+        """(n,) mass outside [low, high] (n,) in the rows row (n,)."""
+        rows = self.integral.rows
+        return self._mass(rows.low[row], low, row) + self._mass(high, rows.high[row], row)
+
+    def _mass(self, a: Array, b: Array, row: Array) -> Array:
+        width = np.maximum(b - a, 0.0)
+        return width * (self.density(a[:, None] + width[:, None] * NODES, row) @ WEIGHTS)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Errors of a table at n viewer inclinations theta_r; every other array is (n,), and the properties are
+    the worst.
+
+    variance    relative variance V
+    weight      largest weight
+    heavy       probability of a weight above HEAVY
+    variation   total variation
+    lost        mass never reached
+    quantile    largest |x_table(u) - x_exact(u)|, rad, for u from OUTER to 1 - OUTER; NaN where not asked for
+    inner       the same from INNER to 1 - INNER
+    """
+
+    theta_r: Array
+    variance: Array
+    weight: Array
+    heavy: Array
+    variation: Array
+    lost: Array
+    quantile: Array
+    inner: Array
+
+    @property
+    def relative_variance(self) -> float:
+        return float(self.variance.max())
+
+    @property
+    def worst_theta_r(self) -> float:
+        return float(self.theta_r[self.variance.argmax()])
+
+    @property
+    def largest_weight(self) -> float:
+        return float(self.weight.max())
+
+    @property
+    def total_variation(self) -> float:
+        return float(self.variation.max())
+
+    @property
+    def lost_mass(self) -> float:
+        return float(self.lost.max())
+
+    @property
+    def quantile_error(self) -> float:
+        return float(self.quantile.max())
+
+    @property
+    def inner_quantile_error(self) -> float:
+        return float(self.inner.max())
+
+    @property
+    def heavy_probability(self) -> float:
+        return float(self.heavy.max())
+
+
+def inclinations(theta_r_range: tuple[float, float], height: int, between: int = BETWEEN) -> Array:
+    """theta_r of every row, and of `between` points spaced evenly between each row and the next."""
+    return np.linspace(*theta_r_range, (height - 1) * (between + 1) + 1)
+
+
+def measure(
+    table: Table, lobe: Lobe, between: int = BETWEEN, quantiles: bool = True, exact: Exact | None = None
+) -> Errors:
+    """Errors of a table that is to sample the lobe, on its rows and between them.
+
+    quantiles: also compare quantiles, which takes most of the time. exact: the lobe at these inclinations, if
+    the caller has it already.
+    """
+    exact = exact or Exact(lobe, inclinations(table.theta_r_range, table.height, between))
+    step = max(1, CHUNK // (ORDER * (table.width - 1)))
+    rows = [np.arange(n, min(n + step, len(exact.theta_r))) for n in range(0, len(exact.theta_r), step)]
+    parts = [_densities(table, exact, row) for row in rows]
+    variance, weight, heavy, variation, lost = (np.concatenate(column) for column in zip(*parts, strict=True))
+    if quantiles:
+        quantile, inner = _quantiles(table, exact)
+    else:
+        quantile = inner = np.full(len(variance), np.nan)
+    return Errors(exact.theta_r, variance, weight, heavy, variation, lost, quantile, inner)
+
+
+def flat_cells(texels: Array) -> int:
+    """Cells whose ends are the same number, or run backwards: their density would be infinite or negative."""
+    return int((np.diff(texels.astype(np.float64), axis=1) <= 0).sum())
+
+
+def narrowest_cell(texels: Array) -> float:
+    """Width of the narrowest cell in units of the last place of the larger of its ends, as float32."""
+    size = np.spacing(np.maximum(abs(texels[:, 1:]), abs(texels[:, :-1])).astype(np.float32))
+    return float((np.diff(texels.astype(np.float64), axis=1) / size).min())
+
+
+def _densities(table: Table, exact: Exact, row: Array) -> tuple[Array, ...]:
+    """(variance, weight, heavy, variation, lost) of the inclinations numbered row."""
+    read = cells(table, exact.theta_r[row])
+    n, i = (index.ravel() for index in np.indices(read.d.shape))
+    low, size = np.zeros(len(n)), np.ones(len(n))
+    square, absolute, heavy = (np.zeros(len(row)) for _ in range(3))
+    at_knots, _ = _weights(read, exact, row, n, i, np.array([[0.0, 1.0]]))
+    weight = at_knots.reshape(len(row), -1).max(axis=1)
+    for depth in range(MAX_DEPTH):
+        w, du = _weights(read, exact, row, n, i, low[:, None] + size[:, None] * NODES)
+        np.maximum.at(weight, n, w.max(axis=1))
+        du = du * (size[:, None] * WEIGHTS)
+        value = (du * (w - 1) ** 2).sum(axis=1)
+        tail = abs((du * (w - 1) ** 2) @ LAST_TWO).sum(axis=1)
+        if depth == 0:
+            allowed = CELL_ERROR / table.width * np.bincount(n, value, len(row)) + ROUNDING
+        split = (tail > np.maximum(OWN_ERROR * value, allowed[n])) & (depth < MAX_DEPTH - 1)
+        parts = (value, (du * abs(w - 1)).sum(axis=1), (du * (w > HEAVY)).sum(axis=1))
+        for total, part in zip((square, absolute, heavy), parts, strict=True):
+            total += np.bincount(n[~split], part[~split], len(row))
+        if not split.any():
+            break
+        n, i, size, low = (np.repeat(values[split], 2) for values in (n, i, size / 2, low))
+        low[1::2] += size[1::2]
+    lost = exact.lost(row, read.x0[:, 0], read.x0[:, -1] + read.d[:, -1])
+    return square - 2 * lost, weight, heavy, (absolute + lost) / 2, lost
+
+
+def _weights(read: Cells, exact: Exact, row: Array, n: Array, i: Array, f: Array) -> tuple[Array, Array]:
+    """(f/q, du/dcolumn) at the fractions f (P, K) of the cells n, i (P,)."""
+    n, i = n[:, None], i[:, None]
+    du = read.du_at(i, f)
+    return exact.density(read.angle_at(n, i, f), row[n[:, 0]]) * read.slope_at(n, i, f) / du, du
+
+
+def _quantiles(table: Table, exact: Exact) -> tuple[Array, Array]:
+    """Per inclination, the largest quantile error in the whole and in the inner range of u."""
+    m, upper = _probabilities(table)
+    i, f, _ = place(table, m, upper)
+    read = cells(table, exact.theta_r)
+    error = abs(read.angle_at(np.arange(len(exact.theta_r))[:, None], i, f) - exact.quantiles(m, upper))
+    return error.max(axis=1), error[:, m >= INNER].max(axis=1)
+
+
+def _probabilities(table: Table) -> tuple[Array, Array]:
+    """(m, upper), both (K,): every half of a cell, and all powers of two between OUTER and 1/2, in both
+    tails."""
+    columns = np.arange(0, (table.width - 1) / 2, 0.5)
+    m = np.concatenate([table.warp.unfold(columns, table.width), np.exp2(np.arange(np.log2(OUTER), 0))])
+    m = np.unique(m[(m >= OUTER) & (m <= 0.5)])
+    return np.tile(m, 2), np.repeat([False, True], len(m))

@@ -1,0 +1,208 @@
+"""The smallest table that meets a tolerance, found by measuring tables.
+
+The tolerance bounds the relative variance V (measure.py) on every row and between rows. V falls with the
+width until the rows themselves are exact enough, and then only with the height. So widths are tried from the
+narrowest that meets the tolerance on rows alone up to WIDEST times that (a wider table would have to make do
+with half its rows); for each the lowest height is found by bisection, and the fewest texels win.
+
+The warp's e is measured too: a small e serves the tails and starves the end cells of floating-point steps.
+Only tables whose narrowest cell spans MIN_STEPS steps of a float are considered, and among the powers of two
+that meet the tolerance at the size found the largest is taken: its end cells are the widest.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+
+from .errors import HairlutError
+from .integrate import Integral, integrate, rows_of_lobe
+from .interpolant import Cell
+from .lobes import Array, Lobe
+from .measure import BETWEEN, Errors, Exact, inclinations, measure, narrowest_cell
+from .table import Table, row_angles, tabulate
+from .warp import Warp
+
+DEFAULT_TOLERANCE = 1e-4
+DEFAULT_LIMIT = 256
+CELL = Cell("quadratic", 0.9)
+MIN_STEPS = 4.0
+EXPONENTS = range(-24, -9)  # of e
+FIRST_EXPONENT = -16
+PROBE_HEIGHT = 33  # rows on which a width alone is judged
+WIDEST = 2
+SEARCHED_BETWEEN = 1  # midway between rows is the worst place
+SLACK = 1.1  # an e is as good as a smaller one if its variance is within this factor
+
+
+class ToleranceError(HairlutError):
+    """A tolerance that no table within the size limit meets. The message says how close the best one came."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A table, its errors, and in words why it is what it is."""
+
+    table: Table
+    errors: Errors
+    reason: str
+
+
+def ladder(limit: int) -> list[int]:
+    """Sides considered, up to limit: multiples of 4 to 64, then 16 steps an octave."""
+    sides = list(range(8, 64, 4))
+    octave = 64
+    while octave <= limit:
+        sides += range(octave, 2 * octave, octave // 16)
+        octave *= 2
+    return [side for side in sides if side <= limit]
+
+
+def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cell: Cell = CELL) -> Choice:
+    """The table of fewest texels with V <= tolerance and sides of the ladder up to limit; ToleranceError if
+    none."""
+    if not tolerance > 0:
+        raise HairlutError(
+            f"tolerance {tolerance!r}: expected a relative variance above 0, such as {DEFAULT_TOLERANCE:g}"
+        )
+    trials = _Trials(lobe, cell)
+    width, height, exponent = _smallest_size(trials, tolerance, limit)
+    while (variance := trials.variance(width, height, exponent, BETWEEN)) > tolerance:
+        taller = [side for side in ladder(limit) if side > height]
+        if not taller:
+            raise _unmet(lobe, tolerance, limit, variance, width, height)
+        height = taller[0]
+    exponent = trials.largest_exponent(width, height, BETWEEN, exponent, tolerance)
+    reason = f"smallest with V <= {tolerance:g}, and largest e that keeps it"
+    return trials.choice(width, height, exponent, reason)
+
+
+def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Choice:
+    """The table of a given size, with the largest e whose V is within SLACK of the best."""
+    trials = _Trials(lobe, cell)
+    exponent = trials.best_exponent(width, height, SEARCHED_BETWEEN, FIRST_EXPONENT)
+    bound = SLACK * trials.variance(width, height, exponent, SEARCHED_BETWEEN)
+    if not np.isfinite(bound):
+        raise HairlutError(
+            f"{lobe.model}/{lobe.name}: at {width}x{height} some cell is narrower than {MIN_STEPS:g} steps "
+            "of a float with every e: use fewer columns"
+        )
+    exponent = trials.largest_exponent(width, height, SEARCHED_BETWEEN, exponent, bound)
+    return trials.choice(width, height, exponent, "size as asked, largest e within 10% of the least V")
+
+
+class _Trials:
+    """Tables of one lobe, on integrals that are worked out once for each height."""
+
+    def __init__(self, lobe: Lobe, cell: Cell):
+        self.lobe, self.cell = lobe, cell
+        self.rows = cache(self._rows)
+        self.exact = cache(self._exact)
+        self.variance = cache(self._variance)
+
+    def _rows(self, height: int) -> tuple[Array, Integral]:
+        theta_r = row_angles(self.lobe.theta_r_range, height)
+        return theta_r, integrate(rows_of_lobe(self.lobe, theta_r))
+
+    def _exact(self, height: int, between: int) -> Exact:
+        return Exact(self.lobe, inclinations(self.lobe.theta_r_range, height, between))
+
+    def table(self, width: int, height: int, exponent: int) -> Table:
+        return tabulate(self.lobe, *self.rows(height), width, Warp("quartic", 2.0**exponent), self.cell)
+
+    def _variance(self, width: int, height: int, exponent: int, between: int) -> float:
+        """V at the worst inclination; infinite where a cell is flat or too narrow for float32."""
+        try:
+            table = self.table(width, height, exponent)
+        except HairlutError:
+            return np.inf
+        if narrowest_cell(table.texels) < MIN_STEPS:
+            return np.inf
+        return measure(table, self.lobe, between, False, self.exact(height, between)).relative_variance
+
+    def best_exponent(self, width: int, height: int, between: int, start: int) -> int:
+        """The exponent of e with the least variance, walking downhill from start."""
+        here = start
+        while True:
+            near = [e for e in (here, here + 1, here - 1) if e in EXPONENTS]
+            best = min(near, key=lambda e: (self.variance(width, height, e, between), -e))
+            if best == here:
+                return here
+            here = best
+
+    def largest_exponent(self, width: int, height: int, between: int, start: int, bound: float) -> int:
+        """The largest exponent of e above start up to which V stays within bound."""
+        while start + 1 in EXPONENTS and self.variance(width, height, start + 1, between) <= bound:
+            start += 1
+        return start
+
+    def choice(self, width: int, height: int, exponent: int, reason: str) -> Choice:
+        table = self.table(width, height, exponent)
+        return Choice(table, measure(table, self.lobe, exact=self.exact(height, BETWEEN)), reason)
+
+
+def _smallest_size(trials: _Trials, tolerance: float, limit: int) -> tuple[int, int, int]:
+    """(width, height, exponent) of the fewest texels, judged on rows and midway between them."""
+    widths = _widths(trials, tolerance, limit)
+    best, closest = None, (np.inf, limit, limit)
+    height = ladder(limit)[0]
+    for width, exponent in reversed(widths):
+        tallest = limit if best is None else (best[0] * best[1] - 1) // width
+        found = _lowest(partial(_searched, trials, width, exponent), tolerance, height, tallest)
+        if found is None:
+            if best is None:
+                closest = min(closest, (_searched(trials, width, exponent, limit), width, limit))
+            continue
+        best, height = (width, found, exponent), found
+    if best is None:
+        raise _unmet(trials.lobe, tolerance, limit, *closest)
+    return best
+
+
+def _searched(trials: _Trials, width: int, exponent: int, height: int) -> float:
+    return trials.variance(width, height, exponent, SEARCHED_BETWEEN)
+
+
+def _widths(trials: _Trials, tolerance: float, limit: int) -> list[tuple[int, int]]:
+    """(width, best exponent) of the widths to try, ascending; ToleranceError if rows alone miss the tolerance
+    at all."""
+    height = min(PROBE_HEIGHT, limit)
+    exponent, widths, closest = FIRST_EXPONENT, [], (np.inf, 0, height)
+    for width in ladder(limit):
+        exponent = trials.best_exponent(width, height, 0, exponent)
+        variance = trials.variance(width, height, exponent, 0)
+        closest = min(closest, (variance, width, height))
+        if variance <= tolerance:
+            widths.append((width, exponent))
+        if widths and width >= WIDEST * widths[0][0]:
+            break
+    if not widths:
+        raise _unmet(trials.lobe, tolerance, limit, *closest)
+    return widths
+
+
+def _lowest(variance: Callable[[int], float], tolerance: float, start: int, tallest: int) -> int | None:
+    """The lowest height of the ladder, from start to tallest, that meets the tolerance; None if tallest does
+    not."""
+    heights = [side for side in ladder(tallest) if side >= start]
+    low, high, step = 0, 0, 1
+    while high < len(heights) and variance(heights[high]) > tolerance:
+        low, high, step = high + 1, high + step, 2 * step
+    if high >= len(heights):
+        high = len(heights) - 1
+        if high < low or variance(heights[high]) > tolerance:
+            return None
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (low, middle) if variance(heights[middle]) <= tolerance else (middle + 1, high)
+    return heights[high]
+
+
+def _unmet(
+    lobe: Lobe, tolerance: float, limit: int, variance: float, width: int, height: int
+) -> ToleranceError:
+    return ToleranceError(
+        f"{lobe.model}/{lobe.name}: no table of up to {limit}x{limit} has V <= {tolerance:g}; the closest, "
+        f"{width}x{height}, has {variance:.2e}: raise --tolerance, or the limit with --max-size"
+    )

@@ -65,7 +65,7 @@ def attributes(table: Table) -> dict[str, str | int]:
         "hairlut.cell": str(table.cell),
         "hairlut.knots": _numbers(table.warp.u(table.width)),
         "hairlut.parameters": table.parameters,
-        "hairlut.log_mass": " ".join(f"{x:.9g}" for x in table.log_mass),
+        "hairlut.log_mass": _numbers(np.round(table.log_mass, 12) + 0.0),  # what every machine agrees on
     }
 
 

@@ -17,12 +17,15 @@ from .lobes import Array, Lobe, LogDensity
 ORDER = 16
 FIRST_PANELS = 128  # with 3 * ORDER points each: what is wider than 1/2000 of the domain cannot slip through
 MAX_PANELS = 4096
-MAX_ROUNDS = 64
+MAX_ROUNDS = 100
 TOLERANCE = 1e-14  # of a panel's integral, relative to the smaller of the masses up to its ends
 EPS = np.finfo(float).eps
 
 _nodes, _weights = np.polynomial.legendre.leggauss(ORDER)
 NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
+HALVES, HALF_WEIGHTS = np.concatenate([NODES / 2, 0.5 + NODES / 2]), np.concatenate([WEIGHTS, WEIGHTS]) / 2
+NEGLIGIBLE = 750.0  # exp(-750) is zero in double precision
+PROBES = np.array([1e-6, 1 - 1e-6])  # just inside a panel's ends, where a spike at a breakpoint shows
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,8 @@ class Integral:
 
 @dataclass
 class _Panels:
-    """Panels in order of row, then of position. The integral over one is fine * exp(top)."""
+    """Panels in order of row, then of position. The integral over one is fine * exp(top), off by about
+    error * exp(top); noise is the part that rounding leaves undecided, edge the log-density at its ends."""
 
     row: Array
     a: Array
@@ -80,6 +84,7 @@ class _Panels:
     fine: Array
     error: Array
     noise: Array
+    edge: Array
 
 
 def rows_of_lobe(lobe: Lobe, theta_r: Array) -> Rows:
@@ -90,8 +95,8 @@ def rows_of_lobe(lobe: Lobe, theta_r: Array) -> Rows:
     given = given(theta_r) if callable(given) else np.tile(given, (count, 1))
     return Rows(
         log_density=_at_rows(lobe.log_density, theta_r),
-        low=np.full(count, lobe.domain[0]),
-        high=np.full(count, lobe.domain[1]),
+        low=np.full(count, lobe.domain[0], float),
+        high=np.full(count, lobe.domain[1], float),
         breakpoints=np.clip(given, *lobe.domain),
         label=lambda row: f"{lobe.model}/{lobe.name} at theta_r = {theta_r[row]:.9g} rad",
     )
@@ -113,7 +118,7 @@ def integrate(rows: Rows) -> Integral:
     panels = _evaluate(rows, *_first_panels(rows))
     for _ in range(MAX_ROUNDS):
         scale = _row_maximum(rows, panels)
-        split = _unresolved(panels, scale, len(rows.low))
+        split = _unresolved(rows, panels, scale)
         if not split.any():
             return _accumulate(rows, panels, scale)
         panels = _bisect(rows, panels, split)
@@ -133,7 +138,7 @@ def _first_panels(rows: Rows) -> tuple[Array, Array, Array]:
 
 
 def _give_way(even: Array, given: Array) -> Array:
-    """Moves an edge that almost is a breakpoint onto it: slivers would drag their neighbours down to their width."""
+    """Moves an edge that almost is a breakpoint onto it: a sliver would drag its neighbours down to its width."""
     if not given.shape[1]:
         return even
     near = (even[:, 1:2] - even[:, :1]) / 64
@@ -164,26 +169,27 @@ def _log_density(rows: Rows, x: Array, row: Array) -> Array:
 
 def _evaluate(rows: Rows, row: Array, a: Array, b: Array) -> _Panels:
     h = b - a
-    whole = a[:, None] + h[:, None] * NODES
-    halves = a[:, None] + h[:, None] * np.concatenate([NODES / 2, 0.5 + NODES / 2])
-    values = _log_density(rows, np.concatenate([whole, halves], axis=1), row)
+    x = a[:, None] + h[:, None] * np.concatenate([NODES, HALVES, PROBES])
+    values, probes = np.split(_log_density(rows, x, row), [3 * ORDER], axis=1)
     top = values.max(axis=1)
     drop = values - np.where(np.isfinite(top), top, 0.0)[:, None]
     density = np.exp(drop)
     coarse = h * (density[:, :ORDER] @ WEIGHTS)
-    fine = h * (density[:, ORDER:] @ np.concatenate([WEIGHTS, WEIGHTS])) / 2
+    fine = h * (density[:, ORDER:] @ HALF_WEIGHTS)
     # what rounding leaves undecided: of the logarithm itself, and of x where the logarithm is steep
     steepness = -np.maximum(drop.min(axis=1), -40.0) * np.maximum(abs(a), abs(b)) / h
     noise = 4 * EPS * (1 + abs(np.where(np.isfinite(top), top, 0.0)) + steepness)
-    return _Panels(row, a, b, top, fine, abs(fine - coarse), noise)
+    return _Panels(row, a, b, top, fine, abs(fine - coarse), noise, probes.max(axis=1))
 
 
 def _row_maximum(rows: Rows, panels: _Panels) -> Array:
     scale = np.full(len(rows.low), -np.inf)
-    np.maximum.at(scale, panels.row, panels.top)
+    np.maximum.at(scale, panels.row, np.maximum(panels.top, panels.edge))
     if not np.isfinite(scale).all():
         row = int(np.argmin(np.isfinite(scale)))
-        raise HairlutError(f"{rows.label(row)}: the density is zero over the whole domain: check both")
+        raise HairlutError(
+            f"{rows.label(row)}: the density is zero over the whole domain: check its domain and formula"
+        )
     return scale
 
 
@@ -199,18 +205,23 @@ def _place(row: Array) -> Array:
     return np.arange(len(row)) - np.searchsorted(row, row)
 
 
-def _unresolved(panels: _Panels, scale: Array, count: int) -> Array:
+def _unresolved(rows: Rows, panels: _Panels, scale: Array) -> Array:
     factor = np.exp(panels.top - scale[panels.row])
-    mass = _spread(panels, panels.fine * factor, count)
+    error = panels.error * factor
+    mass = _spread(panels, panels.fine * factor, len(rows.low))
     nearer = np.minimum(np.cumsum(mass, axis=1), np.cumsum(mass[:, ::-1], axis=1)[:, ::-1])
     nearer = nearer[panels.row, _place(panels.row)]
-    split = panels.error * factor > np.maximum(TOLERANCE * nearer, panels.noise * panels.fine * factor)
+    split = error > np.maximum(TOLERANCE * nearer, panels.noise * panels.fine * factor)
+    split |= panels.edge > np.maximum(panels.top + 1, scale[panels.row] - NEGLIGIBLE)
     # A panel beside a much smaller one may hide the other half of a peak between its points.
     h = panels.b - panels.a
     joined = panels.row[1:] == panels.row[:-1]
     split[:-1] |= joined & (h[:-1] > 2.5 * h[1:])
     split[1:] |= joined & (h[1:] > 2.5 * h[:-1])
-    return split & (h > 4 * EPS * np.maximum(abs(panels.a), abs(panels.b)))
+    # A jump, or an end where the density is unbounded, is left alone when no angle could tell the difference.
+    narrow = h <= EPS * (rows.high - rows.low)[panels.row]
+    harmless = narrow & (error <= TOLERANCE * mass.sum(axis=1)[panels.row])
+    return split & ~harmless & (h > 4 * EPS * np.maximum(abs(panels.a), abs(panels.b)))
 
 
 def _bisect(rows: Rows, panels: _Panels, split: Array) -> _Panels:

@@ -51,7 +51,7 @@ def _newton(
     low, high = np.zeros_like(start), abs(end - start)
     safe = np.where(mass > 0, mass, 1.0)
     d = high * np.clip(rest / safe, 0.0, 1.0)
-    active = np.flatnonzero(high > 0)
+    active = np.flatnonzero((high > 0) & (rest > 0))
     for _ in range(MAX_STEPS):
         if not len(active):
             return start + sign * d

@@ -138,7 +138,7 @@ def _first_panels(rows: Rows) -> tuple[Array, Array, Array]:
 
 
 def _give_way(even: Array, given: Array) -> Array:
-    """Moves an edge that almost is a breakpoint onto it: a sliver would drag its neighbours down to its width."""
+    """Moves an edge that almost is a breakpoint onto it: a sliver would drag others down to its width."""
     if not given.shape[1]:
         return even
     near = (even[:, 1:2] - even[:, :1]) / 64

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from hairlut import exr
 from hairlut.lobes import HALF_PI, MODELS, Lobe
 

@@ -3,6 +3,7 @@
 import mpmath as mp
 import numpy as np
 import pytest
+
 from hairlut import analytic
 from hairlut.errors import HairlutError
 from hairlut.lobes import gaussian

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from hairlut import azimuth
 from hairlut.lobes import HALF_PI, MODELS
 from hairlut.warp import Warp

@@ -3,6 +3,9 @@
 import mpmath as mp
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from hairlut import analytic
 from hairlut.errors import HairlutError
 from hairlut.integrate import integrate, rows_of_lobe
@@ -10,8 +13,6 @@ from hairlut.interpolant import Cell
 from hairlut.lobes import HALF_PI, PRINTED, gaussian
 from hairlut.table import bake_table, row_angles
 from hairlut.warp import Warp
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from precompute import truth
 from precompute.numerical import quantiles
 
@@ -120,7 +121,7 @@ def test_gap_in_the_middle(make_lobe):
 
 
 def test_two_modes_far_apart(make_lobe):
-    # a third of the mass in a spike of sigma 2e-4, the rest broad: the spike is no wider than 1/2000 of the domain
+    # a third of the mass in a spike of sigma 2e-4, hardly wider than 1/2000 of the domain, the rest broad
     def log_density(x, theta_r):
         narrow = np.log(1 / 3) - 0.5 * ((x + 0.7) / 2e-4) ** 2 - np.log(2e-4)
         broad = np.log(2 / 3) - 0.5 * ((x - 0.5) / 0.05) ** 2 - np.log(0.05)
@@ -175,7 +176,7 @@ def test_what_cannot_be_integrated_is_named(make_lobe, log_density, reason):
 
 def test_flat_cells_are_refused(make_lobe, normal):
     lobe = make_lobe(normal(1.0, 1e-7))
-    with pytest.raises(HairlutError, match="round to the same float .* fewer columns or a larger e"):
+    with pytest.raises(HairlutError, match=r"round to the same float .* fewer columns or a larger e"):
         bake_table(lobe, 64, 2, WARP, CELL)
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from hairlut.errors import HairlutError
 from hairlut.lobes import FITTED, MODELS, PRINTED, find_model
 
@@ -79,5 +80,5 @@ def test_printed_reading_is_the_text():
 
 
 def test_unknown_model():
-    with pytest.raises(HairlutError, match="'mine' is not known.*printed, fitted"):
+    with pytest.raises(HairlutError, match=r"'mine' is not known.*printed, fitted"):
         find_model("mine")

@@ -126,6 +126,17 @@ class Errors:
     def heavy_probability(self) -> float:
         return float(self.heavy.max())
 
+    def summary(self) -> dict[str, float]:
+        """The worst errors, by the names that they have in a file's header."""
+        return {
+            "relative_variance": self.relative_variance,
+            "largest_weight": self.largest_weight,
+            "total_variation": self.total_variation,
+            "lost_mass": self.lost_mass,
+            "quantile": self.quantile_error,
+            "quantile_inner": self.inner_quantile_error,
+        }
+
 
 def inclinations(theta_r_range: tuple[float, float], height: int, between: int = BETWEEN) -> Array:
     """theta_r of every row, and of `between` points spaced evenly between each row and the next."""

@@ -21,7 +21,7 @@ from .integrate import Integral, integrate, rows_of_lobe
 from .interpolant import Cell
 from .lobes import Array, Lobe
 from .measure import BETWEEN, Errors, Exact, inclinations, measure, narrowest_cell
-from .table import Table, row_angles, tabulate
+from .table import Table, check_size, row_angles, tabulate
 from .warp import Warp
 
 DEFAULT_TOLERANCE = 1e-4
@@ -80,6 +80,7 @@ def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cel
 
 def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Choice:
     """The table of a given size, with the largest e whose V is within SLACK of the best."""
+    check_size(width, height)
     trials = _Trials(lobe, cell)
     exponent = trials.best_exponent(width, height, SEARCHED_BETWEEN, FIRST_EXPONENT)
     bound = SLACK * trials.variance(width, height, exponent, SEARCHED_BETWEEN)

@@ -64,13 +64,13 @@ def check_size(width: int, height: int) -> None:
 
 def bake_table(lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell) -> Table:
     """Integrates, normalises, inverts and rounds a lobe once; HairlutError if a cell comes out flat."""
-    check_size(width, height)
     theta_r = row_angles(lobe.theta_r_range, height)
     return tabulate(lobe, theta_r, integrate(rows_of_lobe(lobe, theta_r)), width, warp, cell)
 
 
 def tabulate(lobe: Lobe, theta_r: Array, integral: Integral, width: int, warp: Warp, cell: Cell) -> Table:
     """The table whose rows, at theta_r (height,), have been integrated already."""
+    check_size(width, len(theta_r))
     texels = invert(integral, *warp.knots(width)).astype(np.float32)
     _refuse_flat_cells(lobe, theta_r, texels, warp)
     return Table(

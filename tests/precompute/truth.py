@@ -35,7 +35,7 @@ def knot(warp, width, i):
     """(m, upper) of column i, from the definition of the warp."""
     folded = min(i, width - 1 - i)
     upper = 2 * i > width - 1
-    if warp.name == "uniform":
+    if warp.name == "uniform" or folded == 0:
         return mp.mpf(folded) / (width - 1), upper
     e = mp.mpf(warp.e)
     f0, f1 = mp.root(e, 4), mp.root(e + mp.mpf(1) / 2, 4)

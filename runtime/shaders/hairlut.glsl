@@ -1,0 +1,429 @@
+/* hairlut for GLSL 4.30 and GLSL ES 3.00: sample, pdf and invert as in hairlut.h, from the same texels.
+ *
+ *     #version 430                                        // or: #version 300 es
+ *     uniform highp sampler2D tables;                     // R32F, filter NEAREST; the three tables, one below another
+ *     #define HAIRLUT_FETCH(table, column, row) texelFetch(tables, ivec2(column, (table) + (row)), 0).r
+ *     // ... this file, pasted or included ...
+ *     uniform vec4 axes[9];                               // three vec4 a table, from `hairlut export --to raw`
+ *
+ *     hairlut_model hair = hairlut_model(hairlut_axis_of(axes[0], axes[1], axes[2]),     // direct_theta
+ *                                        hairlut_axis_of(axes[3], axes[4], axes[5]),     // direct_phi
+ *                                        hairlut_axis_of(axes[6], axes[7], axes[8]),     // multiple_theta
+ *                                        HAIRLUT_AZIMUTH_DIFFERENCE);                    // printed: _SUM
+ *     hairlut_sample s = hairlut_sample_direct(hair, theta_r, phi_r, u_theta, u_phi);
+ *
+ * HAIRLUT_FETCH(table, column, row) is the includer's: it returns the texel of one table, from a texture or a buffer. The
+ * integer `table` is passed through from hairlut_axis_of and may mean what the includer likes: a first row, a layer, an
+ * index. It is never called outside 0 <= column < columns, 0 <= row < height. Never let the texture unit filter: its 8-bit
+ * weights move an angle by up to 0.003 rad, and the density would not be the density of what was sampled.
+ *
+ * Cost: a sample or density fetches eight texels (four in each of two rows) on each axis; density and invert find their
+ * cell first, by two fetches for each halving of the row.
+ *
+ * The rules of hairlut.h hold for every function: no finite input gives NaN or infinity; u and theta_r are clamped; NaN in
+ * any argument, or an infinite azimuth, gives density 0 and finite angles inside their ranges. NaN is told by its bits,
+ * since a shader compiler may assume that x == x.
+ *
+ * Keep the axes in uniforms or buffers. As compile-time constants they invite a compiler to reorder (1 - u) + e, which
+ * costs the upper tail its precision where `precise` (GLSL 4.00) is missing. */
+#ifndef HAIRLUT_GLSL
+#define HAIRLUT_GLSL
+
+#ifdef GL_ES
+precision highp float;
+precision highp int;
+#define HAIRLUT_PRECISE
+#else
+#define HAIRLUT_PRECISE precise
+#endif
+
+#define HAIRLUT_WARP_UNIFORM 0
+#define HAIRLUT_WARP_QUARTIC 1
+#define HAIRLUT_AZIMUTH_DIFFERENCE 0
+#define HAIRLUT_AZIMUTH_SUM 1
+
+/* One table and the numbers to read it by. */
+struct hairlut_axis {
+    int table;        // passed to HAIRLUT_FETCH
+    int columns;      // >= 4
+    int height;       // >= 2
+    int warp;
+    float row_origin; // theta_r of row 0
+    float row_scale;  // rows per radian of theta_r
+    float low;        // the domain, rad
+    float high;
+    float e;          // quartic warp: (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column
+    float f0;
+    float k;          // uniform warp: m = k c
+    float limit;      // of a cell's curvature, relative to its width
+    float inverse_k;
+};
+
+struct hairlut_model {
+    hairlut_axis direct_theta;
+    hairlut_axis direct_phi;
+    hairlut_axis multiple_theta;
+    int azimuth; // what direct_phi holds: HAIRLUT_AZIMUTH_DIFFERENCE or _SUM of phi_i and phi_r
+};
+
+struct hairlut_sample {
+    float theta_i;         // [-pi/2, pi/2]
+    float phi_i;           // [-pi, pi)
+    float pdf_angle;       // per rad^2
+    float pdf_solid_angle; // per sr
+};
+
+/* The axis that twelve numbers describe: (table, columns, height, warp), (row_origin, row_scale, low, high),
+ * (e, f0, k, limit). */
+hairlut_axis hairlut_axis_of(vec4 shape, vec4 range, vec4 warp)
+{
+    return hairlut_axis(int(shape.x), int(shape.y), int(shape.z), int(shape.w), range.x, range.y, range.z, range.w,
+                        warp.x, warp.y, warp.z, warp.w, 1.0 / warp.z);
+}
+
+/* ---- numbers -------------------------------------------------------------------------------------------------- */
+
+const float hairlut_two_pi = 6.28318548;
+const float hairlut_pi = 3.14159274;
+const float hairlut_inverse_two_pi = 0.159154943; // also the density of a uniform azimuth
+const float hairlut_huge = 1e30;                   // stands for infinity; a row position of it stays finite
+
+bool hairlut_is_nan(float x)
+{
+    return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u;
+}
+
+bool hairlut_is_finite(float x)
+{
+    return (floatBitsToUint(x) & 0x7fffffffu) < 0x7f800000u;
+}
+
+/* x without the values that arithmetic need not honour: NaN becomes `unknown`, infinity a large number. */
+float hairlut_tame(float x, float unknown)
+{
+    return hairlut_is_nan(x) ? unknown : clamp(x, -hairlut_huge, hairlut_huge);
+}
+
+/* phi modulo 2 pi, from [low, low + 2 pi). 2 pi is subtracted in two parts, of which the first multiplies without
+ * rounding. What no float resolves gives low. */
+float hairlut_wrap(float phi, float low)
+{
+    if (!hairlut_is_finite(phi))
+        return low;
+    float n = floor((phi - low) * hairlut_inverse_two_pi);
+    HAIRLUT_PRECISE float r = (phi - n * 6.28125) - n * 1.93530718e-3;
+    return r >= low && r < low + hairlut_two_pi ? r : low;
+}
+
+/* cos(theta) for |theta| <= pi/2 as the sine of the distance z from the pole. The last term is what the float pi/2 lacks:
+ * added at the end, no compiler can fold it into the first subtraction. */
+float hairlut_cos(float theta)
+{
+    float z = max(1.57079637 - abs(theta), 0.0);
+    float w = z * z;
+    float series = 1.0 + w * (-1.0 / 6.0 + w * (1.0 / 120.0 + w * (-1.0 / 5040.0 + w * (1.0 / 362880.0
+                       + w * (-1.0 / 39916800.0)))));
+    return max(z * series - 4.37113883e-8, 4.37113883e-8);
+}
+
+float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)
+{
+    return pdf_angle / hairlut_cos(theta_i);
+}
+
+/* ---- one axis: the reading of a table ------------------------------------------------------------------------- */
+
+/* Two neighbouring rows are blended linearly in theta_r. Within a cell of the blended row, with f in [0,1] its fraction,
+ * x(f) = x0 + f (d + c (1-f)) and dx/df = d + c (1-2f), where d is the cell's width and c its curvature, taken from the
+ * widths of both neighbours. The density is du/dx. */
+
+struct hairlut_rows {
+    int row;  // below theta_r
+    float t;  // weight of the row above, in [0,1]
+};
+
+struct hairlut_cell {
+    float x0, d, c;
+};
+
+/* A place on the u axis: cell index, fraction in it, and du/dcolumn there. */
+struct hairlut_knot {
+    int i;
+    float f;
+    float du;
+};
+
+struct hairlut_draw {
+    float x;
+    float pdf;
+};
+
+hairlut_rows hairlut_axis_rows(hairlut_axis axis, float theta_r)
+{
+    float r = clamp((hairlut_tame(theta_r, axis.row_origin) - axis.row_origin) * axis.row_scale, 0.0,
+                    float(axis.height - 1));
+    int row = min(int(r), axis.height - 2);
+    return hairlut_rows(row, r - float(row));
+}
+
+float hairlut_blend(float a, float b, float t)
+{
+    HAIRLUT_PRECISE float x = a + t * (b - a);
+    return x;
+}
+
+/* The same for widths: positive for positive a and b at every t, which the form above is not where b is far below a. */
+float hairlut_blend_width(float a, float b, float t)
+{
+    return (1.0 - t) * a + t * b;
+}
+
+/* The blended texel of knot i. */
+float hairlut_texel(hairlut_axis axis, hairlut_rows rows, int i)
+{
+    float a = HAIRLUT_FETCH(axis.table, i, rows.row);
+    float b = HAIRLUT_FETCH(axis.table, i, rows.row + 1);
+    return hairlut_blend(a, b, rows.t);
+}
+
+/* Of one row: the cell's first texel, its width, and the width of the cell before less that of the cell after. An end cell
+ * takes the curvature by which its width differs from its neighbour's. */
+vec3 hairlut_widths(hairlut_axis axis, int row, int i)
+{
+    int last = axis.columns - 1;
+    float x0 = HAIRLUT_FETCH(axis.table, i, row);
+    float x1 = HAIRLUT_FETCH(axis.table, i + 1, row);
+    float before = x0 - HAIRLUT_FETCH(axis.table, max(i - 1, 0), row);
+    float after = HAIRLUT_FETCH(axis.table, min(i + 2, last), row) - x1;
+    float d = x1 - x0;
+    float bend = before - after;
+    if (i == 0)
+        bend = 4.0 * (d - after);
+    else if (i == last - 1)
+        bend = 4.0 * (before - d);
+    return vec3(x0, d, bend);
+}
+
+/* Widths are taken in each row before they are blended: neighbouring texels subtract without rounding. */
+hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, int i)
+{
+    vec3 a = hairlut_widths(axis, rows.row, i);
+    vec3 b = hairlut_widths(axis, rows.row + 1, i);
+    float d = hairlut_blend_width(a.y, b.y, rows.t);
+    float bend = hairlut_blend_width(a.z, b.z, rows.t);
+    float bound = axis.limit * d;
+    return hairlut_cell(hairlut_blend(a.x, b.x, rows.t), d, clamp(0.25 * bend, -bound, bound));
+}
+
+/* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */
+hairlut_knot hairlut_axis_knot(hairlut_axis axis, float number)
+{
+    float u = clamp(hairlut_tame(number, 0.0), 0.0, 1.0);
+    HAIRLUT_PRECISE float m = u <= 0.5 ? u : 1.0 - u;
+    float c, du;
+    if (axis.warp == HAIRLUT_WARP_QUARTIC) {
+        HAIRLUT_PRECISE float sum = m + axis.e;
+        float y = sqrt(sqrt(sum));
+        c = (y - axis.f0) * axis.inverse_k;
+        du = 4.0 * axis.k * (y * (y * y));
+    } else {
+        c = m * axis.inverse_k;
+        du = axis.k;
+    }
+    c = clamp(c, 0.0, 0.5 * float(axis.columns - 1));
+    int i = int(c);
+    float f = c - float(i);
+    if (u > 0.5)
+        return hairlut_knot(axis.columns - 2 - i, 1.0 - f, du);
+    return hairlut_knot(i, f, du);
+}
+
+/* Distances, in columns, of a place from both ends of the axis; the smaller one is the folded column. */
+vec2 hairlut_from_ends(hairlut_axis axis, int i, float f)
+{
+    return vec2(float(i) + f, float(axis.columns - 2 - i) + (1.0 - f));
+}
+
+/* du/dcolumn at a place given by cell and fraction. */
+float hairlut_axis_du(hairlut_axis axis, int i, float f)
+{
+    if (axis.warp != HAIRLUT_WARP_QUARTIC)
+        return axis.k;
+    vec2 ends = hairlut_from_ends(axis, i, f);
+    float y = axis.f0 + axis.k * min(ends.x, ends.y);
+    return 4.0 * axis.k * (y * (y * y));
+}
+
+/* Column to u. */
+float hairlut_axis_u(hairlut_axis axis, int i, float f)
+{
+    vec2 ends = hairlut_from_ends(axis, i, f);
+    float m = axis.k * min(ends.x, ends.y);
+    if (axis.warp == HAIRLUT_WARP_QUARTIC) {
+        float y = axis.f0 + m;
+        m *= (y + axis.f0) * (y * y + axis.f0 * axis.f0); // y^4 - f0^4 without its cancellation
+    }
+    m = clamp(m, 0.0, 0.5);
+    return ends.x <= ends.y ? m : 1.0 - m;
+}
+
+/* The cell whose blended texels enclose x. */
+int hairlut_axis_find(hairlut_axis axis, hairlut_rows rows, float x)
+{
+    int i = 0;
+    for (int n = axis.columns - 1; n > 1;) {
+        int half_n = n / 2;
+        i += hairlut_texel(axis, rows, i + half_n) <= x ? half_n : 0;
+        n -= half_n;
+    }
+    return i;
+}
+
+/* (fraction of a cell at which x lies, dx/df there). The root of the quadratic is that slope. */
+vec2 hairlut_cell_solve(hairlut_cell cell, float x)
+{
+    float d = clamp(x - cell.x0, 0.0, cell.d);
+    float s = cell.d + cell.c;
+    float slope = sqrt(max(s * s - 4.0 * cell.c * d, 0.0));
+    return vec2(min(2.0 * d / (s + slope), 1.0), slope);
+}
+
+hairlut_draw hairlut_axis_sample(hairlut_axis axis, float theta_r, float u)
+{
+    hairlut_knot knot = hairlut_axis_knot(axis, u);
+    hairlut_cell cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i);
+    float x = cell.x0 + knot.f * (cell.d + cell.c * (1.0 - knot.f));
+    float slope = cell.d + cell.c * (1.0 - 2.0 * knot.f);
+    return hairlut_draw(clamp(x, axis.low, axis.high), knot.du / slope);
+}
+
+/* Density per rad of hairlut_axis_sample at x; 0 outside the domain and for NaN. */
+float hairlut_axis_pdf(hairlut_axis axis, float theta_r, float x)
+{
+    if (hairlut_is_nan(x) || x < axis.low || x > axis.high)
+        return 0.0;
+    hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
+    int i = hairlut_axis_find(axis, rows, x);
+    vec2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i), x);
+    return hairlut_axis_du(axis, i, place.x) / place.y;
+}
+
+/* The u that hairlut_axis_sample turns into x; outside the domain the nearer end's, 0 for NaN. */
+float hairlut_axis_invert(hairlut_axis axis, float theta_r, float number)
+{
+    float x = hairlut_tame(number, axis.low);
+    hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
+    int i = hairlut_axis_find(axis, rows, x);
+    vec2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i), x);
+    return hairlut_axis_u(axis, i, place.x);
+}
+
+/* ---- the two lobes -------------------------------------------------------------------------------------------- */
+
+/* NaN anywhere, or an infinite azimuth: the density is 0. */
+bool hairlut_known(float theta_r, float phi_r, float a, float b)
+{
+    return !hairlut_is_nan(theta_r) && hairlut_is_finite(phi_r) && !hairlut_is_nan(a) && !hairlut_is_nan(b);
+}
+
+/* The azimuth that the table direct_phi holds, in [0, 2 pi). */
+float hairlut_relative_azimuth(hairlut_model model, float phi_r, float phi_i)
+{
+    float r = hairlut_wrap(phi_r, -hairlut_pi);
+    float i = hairlut_wrap(phi_i, -hairlut_pi);
+    return hairlut_wrap(model.azimuth == HAIRLUT_AZIMUTH_SUM ? i + r : i - r, 0.0);
+}
+
+/* phi_i in [-pi, pi) from the azimuth in the table. */
+float hairlut_incident_azimuth(hairlut_model model, float phi_r, float phi)
+{
+    float r = hairlut_wrap(phi_r, -hairlut_pi);
+    return hairlut_wrap(model.azimuth == HAIRLUT_AZIMUTH_SUM ? phi - r : phi + r, -hairlut_pi);
+}
+
+hairlut_sample hairlut_finish(float theta_i, float phi_i, float pdf)
+{
+    return hairlut_sample(theta_i, phi_i, pdf, hairlut_pdf_to_solid_angle(pdf, theta_i));
+}
+
+/* Draws an incident direction for the viewer direction (theta_r, phi_r) from two numbers in [0,1). */
+hairlut_sample hairlut_sample_direct(hairlut_model model, float theta_r, float phi_r, float u_theta, float u_phi)
+{
+    hairlut_draw theta = hairlut_axis_sample(model.direct_theta, theta_r, u_theta);
+    hairlut_draw phi = hairlut_axis_sample(model.direct_phi, theta_r, u_phi);
+    float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * phi.pdf : 0.0;
+    return hairlut_finish(theta.x, hairlut_incident_azimuth(model, phi_r, phi.x), pdf);
+}
+
+hairlut_sample hairlut_sample_multiple(hairlut_model model, float theta_r, float phi_r, float u_theta, float u_phi)
+{
+    hairlut_draw theta = hairlut_axis_sample(model.multiple_theta, theta_r, u_theta);
+    float u = clamp(hairlut_tame(u_phi, 0.0), 0.0, 1.0);
+    float phi = hairlut_wrap(hairlut_two_pi * u - hairlut_pi, -hairlut_pi);
+    float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_inverse_two_pi : 0.0;
+    return hairlut_finish(theta.x, phi, pdf);
+}
+
+/* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
+float hairlut_pdf_direct(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
+        return 0.0;
+    float phi = hairlut_relative_azimuth(model, phi_r, phi_i);
+    return hairlut_axis_pdf(model.direct_theta, theta_r, theta_i) * hairlut_axis_pdf(model.direct_phi, theta_r, phi);
+}
+
+float hairlut_pdf_multiple(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
+        return 0.0;
+    return hairlut_axis_pdf(model.multiple_theta, theta_r, theta_i) * hairlut_inverse_two_pi;
+}
+
+/* The numbers (u_theta, u_phi) from which the sampling function draws (theta_i, phi_i). Directions outside the domain give
+ * the nearer end's u; NaN gives 0. */
+vec2 hairlut_invert_direct(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    return vec2(hairlut_axis_invert(model.direct_theta, theta_r, theta_i),
+                hairlut_axis_invert(model.direct_phi, theta_r, hairlut_relative_azimuth(model, phi_r, phi_i)));
+}
+
+vec2 hairlut_invert_multiple(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    return vec2(hairlut_axis_invert(model.multiple_theta, theta_r, theta_i),
+                (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_inverse_two_pi);
+}
+
+/* ---- both lobes at once --------------------------------------------------------------------------------------- */
+
+float hairlut_pdf_mixture(hairlut_model model, float direct_weight, float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    if (hairlut_is_nan(direct_weight))
+        return 0.0;
+    float w = clamp(hairlut_tame(direct_weight, 0.0), 0.0, 1.0);
+    return w * hairlut_pdf_direct(model, theta_r, phi_r, theta_i, phi_i)
+           + (1.0 - w) * hairlut_pdf_multiple(model, theta_r, phi_r, theta_i, phi_i);
+}
+
+/* With probability direct_weight, clamped to [0,1], draws from the direct lobe (u_lobe < direct_weight), else from the
+ * multiple lobe. The densities returned are the mixture's: direct_weight * direct + (1 - direct_weight) * multiple. */
+hairlut_sample hairlut_sample_mixture(hairlut_model model, float direct_weight, float theta_r, float phi_r, float u_lobe,
+                                      float u_theta, float u_phi)
+{
+    float w = clamp(hairlut_tame(direct_weight, 0.0), 0.0, 1.0);
+    hairlut_sample s;
+    float direct, multiple;
+    if (!hairlut_is_nan(u_lobe) && u_lobe < w) {
+        s = hairlut_sample_direct(model, theta_r, phi_r, u_theta, u_phi);
+        direct = s.pdf_angle;
+        multiple = hairlut_pdf_multiple(model, theta_r, phi_r, s.theta_i, s.phi_i);
+    } else {
+        s = hairlut_sample_multiple(model, theta_r, phi_r, u_theta, u_phi);
+        multiple = s.pdf_angle;
+        direct = hairlut_pdf_direct(model, theta_r, phi_r, s.theta_i, s.phi_i);
+    }
+    bool known = !hairlut_is_nan(direct_weight) && !hairlut_is_nan(u_lobe) && hairlut_known(theta_r, phi_r, u_theta, u_phi);
+    return hairlut_finish(s.theta_i, s.phi_i, known ? w * direct + (1.0 - w) * multiple : 0.0);
+}
+
+#endif

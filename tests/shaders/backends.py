@@ -1,0 +1,196 @@
+"""Runs the shipped shaders on software drivers: one function a back end, with the same records in and out.
+
+A record holds theta_r, phi_r, u_theta, u_phi, u_lobe, direct_weight, theta_i, phi_i. A result holds the
+sample of each lobe and of the mixture (theta_i, phi_i, pdf_angle, pdf_solid_angle), the three densities, the
+inverse of cos(theta_i), and the two inverted pairs of numbers.
+"""
+
+import base64
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+HERE = Path(__file__).parent
+SHADERS = HERE.parents[1] / "runtime" / "shaders"
+INPUTS, OUTPUTS = 8, 20
+CHROMIUM_FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+)
+RUN_WEBGL = """
+const done = arguments[arguments.length - 1];
+try {
+    done(run(...Array.from(arguments).slice(0, -1)));
+} catch (error) {
+    done("error: " + error.message);
+}
+"""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """tables (rows, columns) float32: three tables, one below another; axes (9, 4) float32: their numbers;
+    azimuth: 0 difference, 1 sum."""
+
+    tables: np.ndarray
+    axes: np.ndarray
+    azimuth: int
+
+
+def source(harness: str, shader: str) -> str:
+    """A test's main program with the shipped file pasted where an include would stand."""
+    return (HERE / harness).read_text().replace("//@hairlut", (SHADERS / shader).read_text())
+
+
+def tool(name: str, package: str) -> str:
+    path = shutil.which(name)
+    if path is None:
+        pytest.skip(f"{name} is not installed: apt-get install {package}")
+    return path
+
+
+def run_glsl(scene: Scene, records: np.ndarray) -> np.ndarray:
+    """GLSL 4.30 compute on Mesa's llvmpipe, without a display."""
+    moderngl = pytest.importorskip("moderngl", reason="moderngl is not installed: pip install moderngl")
+    try:
+        context = moderngl.create_standalone_context(backend="egl", require=430)
+    except Exception as error:
+        pytest.skip(f"no OpenGL 4.30 by EGL ({error}): apt-get install libegl1 libgl1-mesa-dri")
+    height, width = scene.tables.shape
+    shader = context.compute_shader(source("harness.glsl", "hairlut.glsl"))
+    texture = context.texture((width, height), 1, scene.tables.tobytes(), dtype="f4")
+    texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+    texture.use(0)
+    context.buffer(records.tobytes()).bind_to_storage_buffer(0)
+    out = context.buffer(reserve=len(records) * OUTPUTS * 4)
+    out.bind_to_storage_buffer(1)
+    shader["axes"].write(scene.axes.tobytes())
+    shader["azimuth"], shader["count"] = scene.azimuth, len(records)
+    shader.run((len(records) + 63) // 64)
+    context.memory_barrier(moderngl.ALL_BARRIER_BITS)
+    result = np.frombuffer(out.read(), np.float32).reshape(-1, OUTPUTS)
+    context.release()
+    return result
+
+
+def run_wgsl(scene: Scene, records: np.ndarray) -> np.ndarray:
+    """WGSL compute on Mesa's lavapipe."""
+    return _run_wgpu(scene, records, source("harness.wgsl", "hairlut.wgsl"))
+
+
+def run_hlsl(scene: Scene, records: np.ndarray) -> np.ndarray:
+    """HLSL, compiled to SPIR-V, on Mesa's lavapipe."""
+    return _run_wgpu(scene, records, spirv(source("harness.hlsl", "hairlut.hlsl")))
+
+
+def spirv(hlsl: str) -> bytes:
+    glslang = tool("glslangValidator", "glslang-tools")
+    with tempfile.TemporaryDirectory() as folder:
+        file, out = Path(folder, "harness.comp"), Path(folder, "harness.spv")
+        file.write_text(hlsl)
+        command = [glslang, "-D", "-V", "-S", "comp", "-e", "main", "-o", str(out), str(file)]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return out.read_bytes()
+
+
+def _run_wgpu(scene: Scene, records: np.ndarray, code: str | bytes) -> np.ndarray:
+    wgpu = pytest.importorskip("wgpu", reason="wgpu is not installed: pip install wgpu")
+    adapters = [a for a in wgpu.gpu.enumerate_adapters_sync() if a.info["backend_type"] == "Vulkan"]
+    if not adapters:
+        pytest.skip("no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers")
+    device = sorted(adapters, key=lambda a: a.info["adapter_type"] != "CPU")[0].request_device_sync()
+    height, width = scene.tables.shape
+    usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
+    texture = device.create_texture(size=(width, height, 1), format="r32float", usage=usage)
+    layout = {"bytes_per_row": width * 4, "rows_per_image": height}
+    device.queue.write_texture({"texture": texture}, scene.tables.tobytes(), layout, (width, height, 1))
+    axes = np.vstack([scene.axes, [[scene.azimuth, len(records), 0, 0]]]).astype(np.float32)
+    uniform = device.create_buffer_with_data(data=axes.tobytes(), usage="UNIFORM")
+    inputs = device.create_buffer_with_data(data=records.tobytes(), usage="STORAGE")
+    out = device.create_buffer(size=len(records) * OUTPUTS * 4, usage="STORAGE | COPY_SRC")
+    kinds = [
+        {"texture": {"sample_type": "unfilterable-float", "view_dimension": "2d"}},
+        {"buffer": {"type": "uniform"}},
+        {"buffer": {"type": "read-only-storage"}},
+        {"buffer": {"type": "storage"}},
+    ]
+    entries = [{"binding": k, "visibility": wgpu.ShaderStage.COMPUTE, **kind} for k, kind in enumerate(kinds)]
+    group = device.create_bind_group_layout(entries=entries)
+    buffers = [{"buffer": b, "offset": 0, "size": b.size} for b in (uniform, inputs, out)]
+    resources = [{"binding": k, "resource": r} for k, r in enumerate([texture.create_view(), *buffers])]
+    pipeline = device.create_compute_pipeline(
+        layout=device.create_pipeline_layout(bind_group_layouts=[group]),
+        compute={"module": device.create_shader_module(code=code), "entry_point": "main"},
+    )
+    encoder = device.create_command_encoder()
+    compute = encoder.begin_compute_pass()
+    compute.set_pipeline(pipeline)
+    compute.set_bind_group(0, device.create_bind_group(layout=group, entries=resources))
+    compute.dispatch_workgroups((len(records) + 63) // 64)
+    compute.end()
+    device.queue.submit([encoder.finish()])
+    return np.frombuffer(device.queue.read_buffer(out), np.float32).reshape(-1, OUTPUTS)
+
+
+@contextmanager
+def chromium(width: int = 1280, height: int = 900) -> Iterator:
+    """A headless Chromium with WebGL2 in software, as a Selenium driver."""
+    pytest.importorskip("selenium", reason="selenium is not installed: pip install selenium")
+    from selenium.webdriver import Chrome, ChromeOptions, ChromeService
+
+    options = ChromeOptions()
+    options.binary_location = tool("chromium", "chromium")
+    for flag in (*CHROMIUM_FLAGS, f"--window-size={width},{height}"):
+        options.add_argument(flag)
+    driver = Chrome(options=options, service=ChromeService(tool("chromedriver", "chromium-driver")))
+    try:
+        driver.set_script_timeout(120)
+        yield driver
+    finally:
+        driver.quit()
+
+
+def run_webgl(scene: Scene, records: np.ndarray) -> np.ndarray:
+    """GLSL ES 3.00 in a browser: transform feedback of a vertex shader."""
+    with chromium() as driver:
+        driver.get((HERE / "webgl.html").as_uri())
+        text = driver.execute_async_script(
+            RUN_WEBGL,
+            source("harness.es.glsl", "hairlut.glsl"),
+            _text(scene.tables),
+            scene.tables.shape[1],
+            _text(scene.axes),
+            scene.azimuth,
+            _text(records),
+            len(records),
+        )
+    if text == "error: no WebGL2":
+        pytest.skip("this browser has no WebGL2")
+    assert not text.startswith("error:"), text
+    return np.frombuffer(base64.b64decode(text), np.float32).reshape(-1, OUTPUTS)
+
+
+def _text(array: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(array, np.float32).tobytes()).decode()
+
+
+BACKENDS: dict[str, Callable[[Scene, np.ndarray], np.ndarray]] = {
+    "GLSL 4.30, llvmpipe": run_glsl,
+    "WGSL, lavapipe": run_wgsl,
+    "HLSL as SPIR-V, lavapipe": run_hlsl,
+    "GLSL ES 3.00, WebGL2 on SwiftShader": run_webgl,
+}

@@ -1,0 +1,82 @@
+"""The shipped shaders against the C library, on every back end that this machine has."""
+
+import numpy as np
+import pytest
+from shaders import backends
+from shaders.agreement import (
+    DENSITIES,
+    MODELS,
+    NUMBERS,
+    SAMPLES,
+    Agreement,
+    agreement,
+    hard_records,
+    model_tables,
+    random_records,
+    reference,
+    scene,
+)
+from shaders.backends import BACKENDS, Scene
+
+RANDOM = 100_000
+
+
+@pytest.fixture(scope="module", params=MODELS)
+def model(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def tables(model: str) -> Scene:
+    return scene(model_tables(model))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_agrees_with_c_on_random_and_hard_inputs(backend: str, model: str, tables: Scene):
+    records = np.concatenate([hard_records(tables), random_records(RANDOM)])
+    result = agreement(reference(model), records, BACKENDS[backend](tables, records))
+    print(backend, model, result)
+    assert result.holds(), result
+
+
+# One wrong step each; the comparison must notice all of them.
+MUTANTS = {
+    "linear cells": ("axis.limit * d", "0.0 * d"),
+    "end cells without their rule": ("bend = 4.0 * (d - after)", "bend = 0.0"),
+    "rows blended with 8 bits": ("(row, r - float(row))", "(row, floor((r - float(row)) * 256.0) / 256.0)"),
+    "upper tail not folded": ("u <= 0.5 ? u : 1.0 - u", "u"),
+    "difference taken for sum": ("? phi - r : phi + r", "? phi + r : phi - r"),
+    "NaN not told": ("return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u", "return false"),
+    "density of one lobe": ("known ? w * direct + (1.0 - w) * multiple", "known ? direct"),
+    "cosine of the float pi/2": ("z * series - 4.37113883e-8", "z * series"),
+}
+
+
+@pytest.mark.parametrize("mutant", MUTANTS)
+def test_comparison_rejects_a_shader_with_one_wrong_step(mutant: str, monkeypatch: pytest.MonkeyPatch):
+    tables = scene(model_tables("fitted"))
+    records = np.concatenate([hard_records(tables), random_records(2000)])
+    right, wrong = MUTANTS[mutant]
+    shipped = backends.source("harness.glsl", "hairlut.glsl")
+    assert right in shipped
+    monkeypatch.setattr(backends, "source", lambda *_: shipped.replace(right, wrong))
+    got = backends.run_glsl(tables, records)
+    try:
+        result = agreement(reference("fitted"), records, got)
+    except AssertionError:
+        return
+    assert not result.holds(), result
+
+
+def test_comparison_rejects_one_wrong_density_and_one_wrong_number(model: str):
+    """The tolerances themselves: C's own results, one value of one record moved."""
+    records = random_records(1000)
+    got = reference(model)(records)
+    assert agreement(reference(model), records, got) == Agreement(1000, 0.0, 0.0, 0.0, 0)
+    for column in (SAMPLES["direct"] + 2, SAMPLES["mixture"] + 3, DENSITIES["multiple"]):
+        off = got.copy()
+        off[7, column] *= 1 + 2e-4
+        assert not agreement(reference(model), records, off).holds()
+    off = got.copy()
+    off[7, NUMBERS["direct"]] = 1 - off[7, NUMBERS["direct"]]
+    assert not agreement(reference(model), records, off).holds()

@@ -88,8 +88,8 @@ def density(
 ) -> Lobe:
     """Any lobe, as log_density(x, theta_r) or density(x, theta_r), rad.
 
-    breakpoints: where it jumps, bends sharply or has a spike narrower than 1/2000 of the domain; numbers, or a
-    function that returns those at theta_r (R,) as (R, B).
+    breakpoints: where it jumps, bends sharply or has a spike narrower than 1/2000 of the domain; numbers,
+    or a function that returns those at theta_r (R,) as (R, B).
     """
     if (log_density is None) == (density is None):
         raise HairlutError(f"{name}: give either log_density or density, not both or neither")

@@ -42,15 +42,21 @@ class TabulatedDensity:
 
     def __call__(self, x, theta_r):
         """Log-density at x and theta_r (rad, broadcast against each other); -inf outside the domain."""
-        angles, which = np.unique(np.asarray(theta_r, np.float64), return_inverse=True)
-        x, which = np.broadcast_arrays(np.asarray(x, np.float64), which.reshape(np.shape(theta_r)))
-        density = np.zeros(x.shape)
-        inside = (x >= self.edges[0]) & (x <= self.edges[-1])
-        for k, angle in enumerate(angles):
-            here = inside & (which == k)
-            density[here] = self._density(float(angle), x[here])
+        x, theta_r = np.asarray(x, np.float64), np.asarray(theta_r, np.float64)
+        shape = np.broadcast_shapes(x.shape, theta_r.shape)
+        shared = shape[-1:] if theta_r.shape[-1:] == (1,) else (1,)  # how many x in a row have one theta_r
+        of_rows = (*shape[:-1], 1) if shared == shape[-1:] else shape
+        angles, which = np.unique(np.broadcast_to(theta_r, of_rows), return_inverse=True)
+        points = np.broadcast_to(x, shape).reshape(-1, *shared)
+        order = np.argsort(which.ravel(), kind="stable")
+        ends = np.searchsorted(which.ravel()[order], np.arange(len(angles) + 1))
+        density = np.empty(points.shape)
+        for angle, first, last in zip(angles, ends[:-1], ends[1:], strict=True):
+            here = order[first:last]
+            density[here] = self._density(float(angle), points[here])
+        density[(points < self.edges[0]) | (points > self.edges[-1])] = 0.0
         with np.errstate(divide="ignore"):
-            return np.log(density)
+            return np.log(density).reshape(shape)
 
     def _density(self, theta_r: float, x: np.ndarray) -> np.ndarray:
         lowest = 1e-9 / (self.edges[-1] - self.edges[0])

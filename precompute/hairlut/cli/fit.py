@@ -1,0 +1,86 @@
+"""hairlut fit: from measured, simulated or drawn scattering to model files that hairlut bake takes."""
+
+import argparse
+from pathlib import Path
+
+from ..decompose import LOBES
+from ..distribution import CELLS, ROWS
+from ..errors import HairlutError
+
+EXAMPLES = """examples:
+  hairlut fit goniometer.csv --out fits
+  hairlut fit bsdf_grid.npz --measure solid-angle && hairlut bake --model fits/bsdf_grid_masses.npz
+the data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
+CSV, or arrays of these names as npz. A full grid of value is a density; anything else is samples, weighed
+by value."""
+
+
+def add_parser(subparsers) -> argparse.ArgumentParser:
+    parser = subparsers.add_parser(
+        "fit",
+        help="fit a model to samples or a grid of a scattering distribution",
+        description="Fits (a) Gaussian lobes with smooth mean and width and (b) the data's own masses, "
+        "writes both as model files, plots them against the data, and says which of them the scene needs.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("data", type=Path, help="CSV or npz file")
+    parser.add_argument("--out", type=Path, default=Path("fits"), metavar="DIR", help="default: fits")
+    parser.add_argument("--name", help="name of the model (default: that of the data file)")
+    parser.add_argument(
+        "--measure",
+        choices=("angle", "solid-angle"),
+        default="angle",
+        help="what a grid's values are densities in: theta_i and phi, or steradians (default: angle)",
+    )
+    parser.add_argument("--lobes", choices=LOBES, default="both", help="what the data holds (default: both)")
+    parser.add_argument(
+        "--rows",
+        type=int,
+        default=ROWS,
+        help="rows of theta_r that samples are gathered in (default: %(default)s)",
+    )
+    parser.add_argument("--no-plot", action="store_true", help="write no picture (matplotlib is not needed)")
+    return parser
+
+
+def run(args: argparse.Namespace) -> int:
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from ..distribution import read
+    from ..fit import fit
+    from ..fitfiles import text, write_all
+
+    if args.rows < 2:
+        raise HairlutError(f"--rows {args.rows}: expected 2 or more")
+    name = args.name or args.data.stem
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("reading", total=1.0)
+        data = read(args.data, args.measure == "solid-angle", args.rows, CELLS)
+        result = fit(
+            data,
+            args.lobes,
+            report=lambda stage, share: progress.update(task, description=stage, completed=share),
+        )
+        paths = list(write_all(result, args.out, name))
+        if not args.no_plot:
+            progress.update(task, description="plotting", completed=0.0)
+            paths.append(_plot(result, args.out / f"{name}_fit.png", name))
+    print(text(result))
+    print("\n" + "\n".join(map(str, paths)))
+    return 0
+
+
+def _plot(result, path: Path, name: str) -> Path:
+    from ..fitfiles import atomically
+    from ..fitplot import plot
+
+    try:
+        atomically(path, lambda temporary: plot(result, temporary, name))
+    except ImportError as error:
+        raise HairlutError(
+            f"{error.name} is missing: pip install 'hairlut[report]', or use --no-plot"
+        ) from None
+    return path

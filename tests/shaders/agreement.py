@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 from shaders.backends import INPUTS, OUTPUTS, Scene
 
-from hairlut.export import axis_numbers, read_model
+from hairlut.axis import axis_numbers
+from hairlut.export import read_model
 from hairlut.table import Table
 
 ROOT = Path(__file__).parents[2]

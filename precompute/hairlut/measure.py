@@ -40,6 +40,7 @@ NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
 LAST_TWO = np.polynomial.legendre.legvander(_nodes, ORDER - 1)[:, -2:] * (2 * np.arange(ORDER - 2, ORDER) + 1)
 # Coefficients allowed to remain. The sum is exact to twice their degree, and its error is about their square.
 OWN_ERROR = 1e-2
+MAX_FEATURES = 8
 CELL_ERROR = 1e-4  # or this part of a row's variance, shared by its cells
 ROUNDING = 1e-18
 
@@ -51,24 +52,25 @@ class Exact:
         self.lobe = lobe
         self.theta_r = theta_r
         self.integral: Integral = integrate(rows_of_lobe(lobe, theta_r))
+        (low, high), edges = lobe.domain, self.integral.edges
+        self._edges = (np.arange(len(edges))[:, None] + (edges - low) / (high - low) / 2).ravel()
 
     def density(self, x: Array, row: Array) -> Array:
         """(n, k) density at x (n, k), per rad, in the rows row (n,)."""
         inside = np.clip(x, *self.lobe.domain)  # a texel may round to just outside
         return np.exp(self.integral.rows.log_density(inside, row) - self.integral.log_mass[row][:, None])
 
+    def features(self, row: Array, a: Array, b: Array) -> Array:
+        """(n,) edges between a and b (n,) of the panels by which the rows row (n,) were integrated: many
+        where the density varies fast."""
+        low, high = self.lobe.domain
+        return np.searchsorted(self._edges, row + (b - low) / (high - low) / 2) - np.searchsorted(
+            self._edges, row + (a - low) / (high - low) / 2
+        )
+
     def quantiles(self, m: Array, upper: Array) -> Array:
         """(R, K) angles of the tails m, upper (K,)."""
         return invert(self.integral, m, upper)
-
-    def lost(self, row: Array, low: Array, high: Array) -> Array:
-        """(n,) mass outside [low, high] (n,) in the rows row (n,)."""
-        rows = self.integral.rows
-        return self._mass(rows.low[row], low, row) + self._mass(high, rows.high[row], row)
-
-    def _mass(self, a: Array, b: Array, row: Array) -> Array:
-        width = np.maximum(b - a, 0.0)
-        return width * (self.density(a[:, None] + width[:, None] * NODES, row) @ WEIGHTS)
 
 
 @dataclass(frozen=True)
@@ -179,7 +181,7 @@ def _densities(table: Table, exact: Exact, row: Array) -> tuple[Array, ...]:
     read = cells(table, exact.theta_r[row])
     n, i = (index.ravel() for index in np.indices(read.d.shape))
     low, size = np.zeros(len(n)), np.ones(len(n))
-    square, absolute, heavy = (np.zeros(len(row)) for _ in range(3))
+    square, absolute, heavy, reached = (np.zeros(len(row)) for _ in range(4))
     at_knots, _ = _weights(read, exact, row, n, i, np.array([[0.0, 1.0]]))
     weight = at_knots.reshape(len(row), -1).max(axis=1)
     for depth in range(MAX_DEPTH):
@@ -190,15 +192,19 @@ def _densities(table: Table, exact: Exact, row: Array) -> tuple[Array, ...]:
         tail = abs((du * (w - 1) ** 2) @ LAST_TWO).sum(axis=1)
         if depth == 0:
             allowed = CELL_ERROR / table.width * np.bincount(n, value, len(row)) + ROUNDING
-        split = (tail > np.maximum(OWN_ERROR * value, allowed[n])) & (depth < MAX_DEPTH - 1)
-        parts = (value, (du * abs(w - 1)).sum(axis=1), (du * (w > HEAVY)).sum(axis=1))
-        for total, part in zip((square, absolute, heavy), parts, strict=True):
+        split = tail > np.maximum(OWN_ERROR * value, allowed[n])
+        split |= exact.features(row[n], *read.angle_at(n, i, np.array([low, low + size]))) > MAX_FEATURES
+        split &= depth < MAX_DEPTH - 1
+        parts = value, *((du * x).sum(axis=1) for x in (abs(w - 1), w > HEAVY, w))
+        for total, part in zip((square, absolute, heavy, reached), parts, strict=True):
             total += np.bincount(n[~split], part[~split], len(row))
         if not split.any():
             break
         n, i, size, low = (np.repeat(values[split], 2) for values in (n, i, size / 2, low))
         low[1::2] += size[1::2]
-    lost = exact.lost(row, read.x0[:, 0], read.x0[:, -1] + read.d[:, -1])
+    low_end, high_end = np.float32(table.domain)
+    cut = (read.x0[:, 0] > low_end) | (read.x0[:, -1] + read.d[:, -1] < high_end)
+    lost = np.where(cut, np.maximum(1 - reached, 0.0), 0.0)
     return square - 2 * lost, weight, heavy, (absolute + lost) / 2, lost
 
 

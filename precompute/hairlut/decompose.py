@@ -26,7 +26,7 @@ NEGLIGIBLE = 0.01
 
 @dataclass(frozen=True)
 class Split:
-    """direct_weight in [0, 1]; direct_theta (J, n), direct_phi (J, m), multiple_theta (J, n): masses of cells,
+    """direct_weight in [0, 1]; direct_theta (J, n), direct_phi (J, m), multiple_theta (J, n): cells' masses,
     each row summing to 1."""
 
     direct_weight: float

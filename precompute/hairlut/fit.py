@@ -1,4 +1,4 @@
-"""Gaussian lobes for a distribution, how well they and its own masses sample it, and which of the two it needs.
+"""Gaussian lobes for a distribution, how well they and its own masses sample it, and which of them it needs.
 
 A model that draws q where the light is f has the relative variance V = sum f^2/q - 1 over the cells of a
 row, and needs 1 + V times the samples of a perfect one. All variances here are of tables without error;
@@ -53,7 +53,7 @@ class GaussianFit:
 
 @dataclass(frozen=True)
 class Fit:
-    """Variances (J,) of drawing the data: uniformly over the sphere, with the plain marginals, with the split's
+    """Variances (J,) of drawing the data: uniformly over the sphere, with the marginals, with the split's
     own masses, with its Gaussians."""
 
     data: Distribution
@@ -106,7 +106,7 @@ def fit(
 
 
 def variance(data: Distribution, drawn: Array) -> Array:
-    """(J,) relative variance of estimating the data's light with cells drawn by masses (J, n, m) or (n, m)."""
+    """(J,) relative variance of estimating the light with cells drawn by masses (J, n, m) or (n, m)."""
     return (data.mass**2 / np.maximum(drawn, 1e-300)).sum(axis=(1, 2)) - 1
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 
+from .files import write_whole
 from .fit import FAILS, Fit, GaussianFit
 from .lobes import Array
 
@@ -26,28 +26,16 @@ LIMIT_TEXT = (
 
 
 def write_all(fit: Fit, folder: Path, name: str) -> tuple[Path, Path, Path]:
-    """Writes NAME_masses.npz, NAME_gaussians.toml, NAME_fit.json into folder, each in one step; their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
-    masses, gaussians, numbers = (
-        folder / f"{name}{end}" for end in ("_masses.npz", "_gaussians.toml", "_fit.json")
-    )
-    atomically(masses, lambda path: _write_npz(fit, path))
-    atomically(gaussians, lambda path: path.write_text(toml(fit)))
-    atomically(numbers, lambda path: path.write_text(json.dumps(summary(fit), indent=1) + "\n"))
-    return masses, gaussians, numbers
+    """Writes NAME_masses.npz, NAME_gaussians.toml and NAME_fit.json into folder; their paths."""
+    contents = {
+        "_masses.npz": _npz(fit),
+        "_gaussians.toml": toml(fit).encode(),
+        "_fit.json": f"{json.dumps(summary(fit), indent=1)}\n".encode(),
+    }
+    return tuple(write_whole(folder / f"{name}{end}", data) for end, data in contents.items())
 
 
-def atomically(path: Path, write: Callable[[Path], object]) -> None:
-    """Calls write with a temporary path beside `path` and moves the result there."""
-    temporary = path.with_name(f".{os.getpid()}.{path.name}")
-    try:
-        write(temporary)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _write_npz(fit: Fit, path: Path) -> None:
+def _npz(fit: Fit) -> bytes:
     data, split = fit.data, fit.split
     arrays = {"azimuth": np.array("difference"), "direct_weight": np.array(split.direct_weight)}
     for name, edges in (
@@ -60,8 +48,9 @@ def _write_npz(fit: Fit, path: Path) -> None:
             f"{name}.theta_r": data.theta_r,
             f"{name}.mass": getattr(split, name),
         }
-    with path.open("wb") as file:
-        np.savez_compressed(file, **arrays)
+    file = BytesIO()
+    np.savez_compressed(file, **arrays)
+    return file.getvalue()
 
 
 def toml(fit: Fit) -> str:

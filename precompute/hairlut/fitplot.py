@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from io import BytesIO
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from .fitfiles import HUGE, variances
 SHOWN = 4
 
 
-def plot(fit: Fit, path: Path, title: str) -> None:
-    """Writes the picture to path (PNG); needs matplotlib."""
+def plot(fit: Fit, title: str) -> bytes:
+    """The picture as PNG; needs matplotlib."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -46,15 +46,17 @@ def plot(fit: Fit, path: Path, title: str) -> None:
     axes[1, 0].set_ylabel("density per rad")
     axes[0, 0].legend(fontsize="small")
     _costs(fit, axes[0, -1])
+    axes[1, -1].legend(*axes[0, -1].get_legend_handles_labels(), loc="upper center", frameon=False)
     axes[1, -1].axis("off")
     figure.suptitle(f"{title}, direct weight {fit.split.direct_weight:.2f}")
     figure.tight_layout()
-    figure.savefig(path, dpi=90, format="png", metadata={"Software": None})
+    picture = BytesIO()
+    figure.savefig(picture, dpi=90, format="png", metadata={"Software": None})
     pyplot.close(figure)
+    return picture.getvalue()
 
 
 def _costs(fit: Fit, ax) -> None:
     for (name, values), style in zip(variances(fit).items(), ("C7:", "C2-.", "C0-", "C3--"), strict=True):
         ax.semilogy(np.degrees(fit.data.theta_r), np.clip(values, 1e-4, HUGE), style, label=name)
     ax.set(xlabel="theta_r [deg]", title="relative variance", ylim=(1e-4, HUGE))
-    ax.legend(fontsize="small")

@@ -101,6 +101,6 @@ def _check_elementwise(lobe: Lobe, where: str, x: Array, theta_r: Array, values:
         if not same.all():
             raise HairlutError(
                 f"{where}: {lobe.name} at theta_r = {_both(theta_r[j])}: the density is not vectorised: "
-                f"log-density {whole[0]:.6g} at x = {x[k[0]]:.6g} in a long array, {part[0]:.6g} in a short one: "
+                f"log-density {whole[0]:.6g} at x = {x[k[0]]:.6g} in a long array, {part[0]:.6g} in a short: "
                 "each element of the result must depend on its own x and theta_r alone"
             )

@@ -10,7 +10,8 @@ A **Python file** defines `LOBES`, one of each name, in any order:
         density("direct_phi", log_density=lambda phi, theta_r: 2 * np.cos(phi - np.pi) + 0 * theta_r),
         gaussian("multiple_theta", mean=lambda theta_r: -0.4 * theta_r, sigma=0.5),
     )
-    AZIMUTH = "difference"      # or "sum": whether phi is phi_i - phi_r (the default) or phi_i + phi_r
+    AZIMUTH = "difference"     # or "sum": whether phi is phi_i - phi_r (the default) or phi_i + phi_r
+    INPUTS = ("table.csv",)    # files beside it that it reads: when they change, the textures are out of date
 
 Angles are in radians. Every function gets NumPy arrays that broadcast against each other and works element
 by element. `direct_theta` and `multiple_theta` are densities of theta_i in [-pi/2, pi/2], `direct_phi` of
@@ -155,6 +156,17 @@ def load(path: Path) -> Model:
     return model
 
 
+def inputs(path: Path) -> list[Path]:
+    """The model file and the files that it names in INPUTS; HairlutError if one of these is missing."""
+    if path.suffix != ".py":
+        return [path]
+    named = [path.parent / name for name in getattr(_execute(path), "INPUTS", ())]
+    for file in named:
+        if not file.is_file():
+            raise HairlutError(f"{path}: INPUTS names {file}, which is missing")
+    return [path, *named]
+
+
 def assemble(name: str, given: Sequence[Lobe], azimuth: str, where: str) -> Model:
     """A model of the three lobes; HairlutError if one is missing or there twice."""
     names = [lobe.name for lobe in given]
@@ -174,7 +186,7 @@ def assemble(name: str, given: Sequence[Lobe], azimuth: str, where: str) -> Mode
 # ---- Python
 
 
-def _from_python(path: Path) -> tuple[Sequence[Lobe], str]:
+def _execute(path: Path) -> ModuleType:
     module = ModuleType(path.stem)
     module.__file__ = str(path)
     try:
@@ -183,6 +195,11 @@ def _from_python(path: Path) -> tuple[Sequence[Lobe], str]:
         raise HairlutError(f"{path}: {error}") from None
     except Exception as error:  # whatever the user's file does wrong
         raise HairlutError(f"{path}{_line(error, path)}: {type(error).__name__}: {error}") from None
+    return module
+
+
+def _from_python(path: Path) -> tuple[Sequence[Lobe], str]:
+    module = _execute(path)
     given = getattr(module, "LOBES", None)
     if not isinstance(given, (tuple, list)) or not all(isinstance(lobe, Lobe) for lobe in given):
         raise HairlutError(f"{path}: expected LOBES, a tuple of gaussian(), density() or tabulated()")

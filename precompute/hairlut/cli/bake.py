@@ -1,14 +1,18 @@
 """hairlut bake: from the equations to the textures."""
 
 import argparse
+import os
 import re
 import sys
 from pathlib import Path
 
-from .. import exr, size
+import numpy as np
+
+from .. import batch_bake, exr, manifest, modelfile, size
 from ..errors import HairlutError
 from ..interpolant import Cell
-from ..lobes import MODELS, Lobe, find_model
+from ..lobecheck import find_jump
+from ..lobes import MODELS, Lobe, Model
 from ..measure import measure
 from ..table import bake_table
 from ..warp import Warp
@@ -17,7 +21,10 @@ EXAMPLES = """examples:
   hairlut bake                                      both models into luts/, as small as V <= 1e-4 allows
   hairlut bake --model fitted --tolerance 1e-3 --out small
   hairlut bake --size 64x64 --out square
-  hairlut bake --size 64x64 --warp uniform --cell linear --out baseline"""
+  hairlut bake --size 64x64 --warp uniform --cell linear --out baseline
+  hairlut bake --model my_hair.py                   lobes of your own (see the module hairlut.modelfile)
+  hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/
+  parallel hairlut bake --out baked --model ::: hairs/*.py      the same on a queue's machines"""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
@@ -30,8 +37,15 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "--model", action="append", help=f"one of {', '.join(MODELS)}; may be repeated (default: all)"
+        "--model",
+        action="append",
+        help=f"one of {', '.join(MODELS)}; or a model file ({', '.join(modelfile.SUFFIXES)}), or a directory "
+        "of them, baked where textures are not up to date; may be repeated (default: the built-in ones)",
     )
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count(), metavar="N", help="models of a directory baked at a time"
+    )
+    parser.add_argument("--force", action="store_true", help="bake model files that are up to date again")
     how_large = parser.add_mutually_exclusive_group()
     how_large.add_argument(
         "--tolerance",
@@ -80,24 +94,100 @@ def run(args: argparse.Namespace) -> int:
         raise HairlutError("--warp: a tolerance chooses the warp itself: give --size too")
     args.warp = args.warp and Warp.parse(args.warp)
     args.cell = Cell.parse(args.cell)
-    models = [find_model(name) for name in dict.fromkeys(args.model or MODELS)]
-    try:
-        choices = bake_all([lobe for model in models for lobe in model.lobes], args)
-    except size.ToleranceError as error:
-        print(f"hairlut: {error}", file=sys.stderr)
+    names = list(dict.fromkeys(args.model or MODELS))
+    if any(Path(name).is_dir() for name in names):
+        return run_many(names, args)
+    sources = {name: Path(name) for name in names if name not in MODELS}
+    for name, source in list(sources.items()):
+        if not args.force and manifest.is_current(args.out / source.stem, source, options(args)):
+            print(f"{args.out / source.stem}: {batch_bake.UP_TO_DATE}")
+            names.remove(name)
+    models = {name: modelfile.find(name) for name in names}
+    choices = bake_all([lobe for model in models.values() for lobe in model.lobes], args)
+    if choices is None:
         return 1
     for choice in choices:  # only when all of them have come out
         write(args.out, choice)
+    for name, model in models.items():
+        if name in sources:
+            record(args, sources[name], model)
     return 0
 
 
-def bake_all(lobes: list[Lobe], args: argparse.Namespace) -> list[size.Choice]:
+def options(args: argparse.Namespace) -> dict:
+    """What a model file's textures depend on besides the file."""
+    shape = {"size": args.size} if args.size else {"tolerance": args.tolerance, "max_size": args.max_size}
+    return {key: str(value) for key, value in {**shape, "warp": args.warp, "cell": args.cell}.items()}
+
+
+def record(args: argparse.Namespace, source: Path, model: Model) -> None:
+    folder = args.out / model.name
+    textures = [folder / f"{lobe.name}.exr" for lobe in model.lobes]
+    manifest.record(folder, modelfile.inputs(source), textures, options(args))
+
+
+def run_many(names: list[str], args: argparse.Namespace) -> int:
+    """Bakes directories of model files in processes of their own; 1 if any of them failed."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    if args.jobs < 1:
+        raise HairlutError(f"--jobs {args.jobs}: expected 1 or more")
+    sources = batch_bake.model_files([Path(name) for name in names])
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("baking", total=len(sources))
+
+        def report(outcome: batch_bake.Outcome) -> None:
+            progress.advance(task)
+            print(f"{outcome.source}: {outcome.status} ({outcome.seconds:.1f} s)", flush=True)
+            if outcome.status == "failed":
+                print(f"  {outcome.text}", file=sys.stderr, flush=True)
+
+        outcomes = batch_bake.bake_many(sources, passed_on(args), args.jobs, report)
+    counts = {status: sum(o.status == status for o in outcomes) for status in batch_bake.STATUSES}
+    print(f"{len(outcomes)} models: " + ", ".join(f"{count} {status}" for status, count in counts.items()))
+    for outcome in outcomes:
+        if outcome.status == "failed":
+            print(f"  failed: {outcome.source}")
+    return 1 if counts["failed"] else 0
+
+
+def passed_on(args: argparse.Namespace) -> list[str]:
+    """The options of this command for the command that bakes one model."""
+    shape = ["--size", "x".join(map(str, args.size))] if args.size else ["--tolerance", repr(args.tolerance)]
+    rest = ["--max-size", str(args.max_size), "--cell", str(args.cell), "--out", str(args.out)]
+    warp = ["--warp", str(args.warp)] if args.warp else []
+    return [*shape, *rest, *warp, *(["--force"] if args.force else [])]
+
+
+def bake_all(lobes: list[Lobe], args: argparse.Namespace) -> list[size.Choice] | None:
+    """The tables of all lobes; None, with the reason on stderr, if one cannot meet the tolerance."""
     from rich.console import Console
     from rich.progress import track
 
     console = Console(stderr=True)
     shown = track(lobes, "baking", console=console, transient=True, disable=not console.is_terminal)
-    return [bake_one(lobe, args) for lobe in shown]
+    choices = []
+    for lobe in shown:
+        try:
+            choices.append(bake_one(lobe, args))
+        except size.ToleranceError as error:
+            print(f"hairlut: {error}{_jump(lobe)}", file=sys.stderr)
+            return None
+    return choices
+
+
+def _jump(lobe: Lobe) -> str:
+    """Where a density jumps, if it does: the likely reason why no table meets a tolerance."""
+    for theta_r in np.linspace(*lobe.theta_r_range, 19):
+        x = find_jump(lobe, theta_r)
+        if x is not None:
+            return (
+                f". The density jumps at x = {x:.6g} rad where theta_r = {np.degrees(theta_r):.4g} deg: "
+                "no smooth table resolves that; replace the jump by a slope"
+            )
+    return ""
 
 
 def bake_one(lobe: Lobe, args: argparse.Namespace) -> size.Choice:

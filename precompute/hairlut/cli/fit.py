@@ -74,11 +74,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _plot(result, path: Path, name: str) -> Path:
-    from ..fitfiles import atomically
+    from ..files import write_whole
     from ..fitplot import plot
 
     try:
-        atomically(path, lambda temporary: plot(result, temporary, name))
+        return write_whole(path, plot(result, name))
     except ImportError as error:
         raise HairlutError(
             f"{error.name} is missing: pip install 'hairlut[report]', or use --no-plot"

@@ -1,0 +1,80 @@
+"""Bakes a directory of model files: one process a model, so that none can stop or slow another.
+
+Each process runs the command that bakes that one model, `hairlut bake --model FILE --out DIR`, and nothing
+passes between them but files. A render farm's queue can run the same command for each file instead.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+
+from .errors import HairlutError
+from .modelfile import SUFFIXES
+
+UP_TO_DATE = "up to date"
+STATUSES = ("baked", UP_TO_DATE, "failed")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one model: one of STATUSES; text is what its process printed."""
+
+    source: Path
+    status: str
+    text: str
+    seconds: float
+
+
+def model_files(paths: Sequence[Path]) -> list[Path]:
+    """The model files among paths and in the directories among them.
+
+    HairlutError if a directory has none, a path is neither, or two would bake to the same textures.
+    """
+    found = [file for path in paths for file in (_files(path) if path.is_dir() else [path])]
+    by_stem: dict[str, Path] = {}
+    for file in found:
+        if file.suffix not in SUFFIXES or not file.is_file():
+            raise HairlutError(f"{file}: neither a directory nor a model file ({', '.join(SUFFIXES)})")
+        if file.stem in by_stem:
+            raise HairlutError(f"{by_stem[file.stem]} and {file} would both bake to {file.stem}/: rename one")
+        by_stem[file.stem] = file
+    return found
+
+
+def _files(folder: Path) -> list[Path]:
+    shown = sorted(path for path in folder.iterdir() if not path.name.startswith((".", "_")))
+    found = [path for path in shown if path.suffix in SUFFIXES]
+    if not found:
+        raise HairlutError(f"{folder}: no model files: expected names ending in {', '.join(SUFFIXES)}")
+    return found
+
+
+def bake_many(
+    sources: Sequence[Path],
+    options: Sequence[str],
+    jobs: int,
+    report: Callable[[Outcome], None] = lambda outcome: None,
+) -> list[Outcome]:
+    """Bakes each model file with these options of `hairlut bake`, `jobs` at a time; the outcomes in order."""
+    with ThreadPoolExecutor(max_workers=jobs) as pool:
+        waiting = [pool.submit(_bake, source, options) for source in sources]
+        for done in as_completed(waiting):
+            report(done.result())
+    return [future.result() for future in waiting]
+
+
+def _bake(source: Path, options: Sequence[str]) -> Outcome:
+    start = monotonic()
+    command = [sys.executable, "-m", "hairlut.cli", "bake", "--model", str(source), *options]
+    one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    result = subprocess.run(command, capture_output=True, text=True, env=os.environ | one_thread, check=False)
+    text = (result.stdout + result.stderr).strip() or f"no output, exit code {result.returncode}"
+    status = "failed" if result.returncode else UP_TO_DATE if text.endswith(UP_TO_DATE) else "baked"
+    return Outcome(source, status, text, monotonic() - start)

@@ -1,6 +1,5 @@
 """Tables as OpenEXR files (luts/FORMAT.md): written whole or not at all, and read with suspicion."""
 
-import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import OpenEXR
 
 from . import __version__
 from .errors import HairlutError
+from .files import replace_whole
 from .interpolant import Cell
 from .table import Table, check_size
 from .warp import Warp
@@ -36,16 +36,12 @@ def write(path: Path, table: Table, errors: Mapping[str, float] | None = None) -
         **{ERROR_PREFIX + name: f"{value:.3e}" for name, value in (errors or {}).items()},
     }
     texels = np.ascontiguousarray(table.texels, np.float32)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+
+    def write_image(temporary: Path) -> None:
         with OpenEXR.File(header, {"Y": texels}) as file:
             file.write(str(temporary))
-        os.replace(temporary, path)
-    except (OSError, RuntimeError) as error:
-        raise HairlutError(f"{path}: cannot be written: {error}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
+
+    replace_whole(path, write_image)
 
 
 def attributes(table: Table) -> dict[str, str | int]:

@@ -1,21 +1,32 @@
 """Files that appear whole or not at all."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from .errors import HairlutError
 
 
-def write_whole(path: Path, data: bytes) -> Path:
-    """Writes data to path in one step, with the folders it lies in; HairlutError if that cannot be done."""
+def replace_whole(path: Path, write: Callable[[Path], None]) -> Path:
+    """Lets write make a file beside path, with the folders it lies in, and then puts it in path's place.
+
+    HairlutError if that cannot be done; what stood at path before is then untouched.
+    """
     temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            temporary.write_bytes(data)
+            write(temporary)
             os.replace(temporary, path)
         finally:
             temporary.unlink(missing_ok=True)
-    except OSError as error:
-        raise HairlutError(f"{path}: cannot be written: {error.strerror}") from error
+    except (OSError, RuntimeError) as error:  # OpenEXR raises the latter
+        raise HairlutError(
+            f"{path}: cannot be written: {getattr(error, 'strerror', None) or error}"
+        ) from error
     return path
+
+
+def write_whole(path: Path, data: bytes) -> Path:
+    """Writes data to path in one step."""
+    return replace_whole(path, lambda temporary: temporary.write_bytes(data))

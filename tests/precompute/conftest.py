@@ -13,6 +13,12 @@ LUTS = ROOT / "luts"
 SHIPPED = [f"{model.name}/{lobe.name}" for model in MODELS.values() for lobe in model.lobes]
 
 
+@pytest.fixture(scope="session")
+def luts():
+    """The directory of the shipped models."""
+    return LUTS
+
+
 @pytest.fixture(scope="session", params=SHIPPED)
 def shipped(request):
     """A shipped table, its path and its lobe."""

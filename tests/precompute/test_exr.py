@@ -1,0 +1,245 @@
+"""Files: what is written is read again; what is no table is refused with file, attribute and remedy."""
+
+import os
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from hairlut import exr
+from hairlut.errors import HairlutError
+from hairlut.interpolant import Cell
+from hairlut.lobes import FITTED, PRINTED
+from hairlut.table import bake_table
+from hairlut.warp import Warp
+
+
+@pytest.fixture(scope="module")
+def table():
+    return bake_table(FITTED.direct_phi, 12, 5, Warp("quartic", 2.0**-12), Cell("quadratic", 0.9))
+
+
+@pytest.fixture
+def path(table, tmp_path):
+    exr.write(tmp_path / "direct_phi.exr", table, {"relative_variance": 1.25e-3})
+    return tmp_path / "direct_phi.exr"
+
+
+def rewrite(path, change=None, pixels=None, drop=None):
+    """Writes the file again with attributes changed or dropped, or with other pixels."""
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        header = dict(file.header())
+        channels = {name: np.array(channel.pixels) for name, channel in file.channels().items()}
+    header = {k: v for k, v in header.items() if k not in ("channels", "dataWindow", "displayWindow")}
+    header.pop(drop, None)
+    header |= change or {}
+    if pixels is not None:
+        channels = pixels(channels["Y"])
+    channels = {name: np.ascontiguousarray(data) for name, data in channels.items()}
+    with OpenEXR.File(header, channels) as file:
+        file.write(str(path))
+
+
+@pytest.mark.parametrize("warp", [Warp("uniform"), Warp("quartic", 2.0**-14), Warp("quartic", 0.1)], ids=str)
+@pytest.mark.parametrize("cell", [Cell("linear"), Cell("quadratic", 0.9)], ids=str)
+@pytest.mark.parametrize("size", [(4, 2), (33, 7)])
+def test_round_trip(tmp_path, warp, cell, size):
+    for lobe in FITTED.lobes:
+        table = bake_table(lobe, *size, warp, cell)
+        path = tmp_path / "new" / "directory" / f"{lobe.name}.exr"
+        exr.write(path, table, {"quantile": 1.5e-3, "largest_weight": 2.0})
+        again, errors = exr.read(path)
+        np.testing.assert_array_equal(again.texels, table.texels)
+        assert again.texels.dtype == np.float32
+        np.testing.assert_allclose(again.log_mass, table.log_mass, rtol=0, atol=1e-12)
+        plain = {"texels": None, "log_mass": None}
+        assert replace(again, **plain) == replace(table, **plain)
+        assert errors == {"quantile": 1.5e-3, "largest_weight": 2.0}
+        assert [p.name for p in path.parent.iterdir() if p.suffix != ".exr"] == []
+
+
+def test_header_is_what_the_format_page_says(path, table):
+    with OpenEXR.File(str(path)) as file:
+        header = dict(file.header())
+        assert list(file.channels()) == ["Y"]
+    assert header["colorInteropID"] == "data"
+    assert header["hairlut.format"] == 1
+    assert header["hairlut.model"] == "fitted"
+    assert header["hairlut.table"] == "direct_phi"
+    assert header["hairlut.angle"] == "phi"
+    assert header["hairlut.azimuth"] == "difference"
+    assert header["hairlut.unit"] == "rad"
+    assert header["hairlut.theta_r_range"] == "-1.5707963267948966 1.5707963267948966"
+    assert header["hairlut.domain"] == "0.0 6.283185307179586"
+    assert header["hairlut.warp"] == "quartic e=0.000244140625"
+    assert header["hairlut.cell"] == "quadratic limit=0.9"
+    assert header["hairlut.error.relative_variance"] == "1.250e-03"
+    np.testing.assert_array_equal([float(x) for x in header["hairlut.knots"].split()], table.warp.u(12))
+    assert header["compression"] == OpenEXR.ZIP_COMPRESSION
+    assert header["type"] == OpenEXR.scanlineimage
+
+
+def test_byte_identical_when_written_twice(path, table, tmp_path):
+    other = tmp_path / "b" / "direct_phi.exr"
+    exr.write(other, table, {"relative_variance": 1.25e-3})
+    assert other.read_bytes() == path.read_bytes()
+
+
+def test_a_strided_array_is_not_written_corrupted(tmp_path, table):
+    wide = np.repeat(table.texels, 2, axis=1)[:, ::2]
+    assert not wide.flags.c_contiguous
+    exr.write(tmp_path / "direct_phi.exr", replace(table, texels=wide))
+    np.testing.assert_array_equal(exr.read(tmp_path / "direct_phi.exr")[0].texels, table.texels)
+
+
+REQUIRED = [
+    "format",
+    "model",
+    "table",
+    "angle",
+    "azimuth",
+    "unit",
+    "theta_r_range",
+    "domain",
+    "warp",
+    "cell",
+    "knots",
+    "parameters",
+    "log_mass",
+]
+
+
+def refusal(path):
+    with pytest.raises(HairlutError) as caught:
+        exr.read(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ")
+    assert "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize("name", REQUIRED)
+def test_missing_attribute(path, name):
+    rewrite(path, drop=f"hairlut.{name}")
+    message = refusal(path)
+    assert f"attribute hairlut.{name} is missing" in message
+    assert "hairlut bake" in message
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "reason"),
+    [
+        ("format", 2, "is 2, expected 1 or less: use a newer hairlut"),
+        ("format", 0, "is 0, expected 1"),
+        ("format", "1", "is '1', expected 1"),
+        ("unit", "deg", "is 'deg', expected 'rad'"),
+        ("angle", "phi_i", "is 'phi_i', expected 'theta_i' or 'phi'"),
+        ("azimuth", "wrapped", "is 'wrapped', expected 'sum' or 'difference' or 'none'"),
+        ("table", "multiple_theta", "is 'multiple_theta', expected 'direct_phi': rename the file"),
+        ("theta_r_range", "1.0 -1.0", "expected two increasing numbers"),
+        ("theta_r_range", "1.0", "expected 2 finite numbers"),
+        ("domain", "0.0 inf", "expected 2 finite numbers"),
+        ("domain", "zero one", "expected 2 finite numbers"),
+        ("warp", "cubic", "is 'cubic' (warp cubic is not known: expected 'quartic"),
+        ("warp", "quartic e=0.5", None),
+        ("cell", "quadratic limit=2", "expected a limit"),
+        ("knots", "0.0 1.0", "expected 12 finite numbers"),
+        ("log_mass", "0.0", "expected 5 finite numbers"),
+        ("error.relative_variance", "small", "expected 1 finite numbers"),
+    ],
+)
+def test_wrong_attribute(path, name, value, reason):
+    rewrite(path, {f"hairlut.{name}": value})
+    message = refusal(path)
+    assert f"attribute hairlut.{'knots' if reason is None else name} " in message
+    assert (reason or "from the warp quartic e=0.5") in message
+
+
+def test_knots_that_are_not_the_warps(path):
+    with OpenEXR.File(str(path)) as file:
+        knots = file.header()["hairlut.knots"].split()
+    knots[3] = repr(float(knots[3]) + 1e-12)
+    rewrite(path, {"hairlut.knots": " ".join(knots)})
+    assert "attribute hairlut.knots has" in refusal(path)
+    assert "at column 3" in refusal(path)
+
+
+def broken(j, i, value):
+    def change(texels):
+        texels = texels.copy()
+        texels[j, i] = value
+        return {"Y": texels}
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("pixels", "reason"),
+    [
+        (broken(2, 3, np.nan), "row 2, column 3 is nan, expected a finite angle"),
+        (broken(2, 3, np.inf), "row 2, column 3 is inf, expected a finite angle"),
+        (broken(4, 5, 0.0), "row 4, columns 4 and 5"),
+        (broken(0, 0, -1.0), "row 0 runs from -1 to"),
+        (broken(1, 11, 7.0), "row 1 runs from 0 to 7"),
+        (lambda y: {"Y": np.repeat(y[:, :1], 12, axis=1)}, "expected strictly increasing angles"),
+        (lambda y: {"Y": y.astype(np.float16)}, "channel Y is float16, expected 32-bit float"),
+        (lambda y: {"R": y}, "channels are R, expected Y alone"),
+        (lambda y: {"Y": y, "Z": y}, "channels are Y, Z, expected Y alone"),
+        (lambda y: {"Y": y[:, :3]}, "expected a width of 4"),
+        (lambda y: {"Y": y[:1]}, "a height of 2"),
+    ],
+)
+def test_wrong_texels(path, pixels, reason):
+    rewrite(path, pixels=pixels)
+    message = refusal(path)
+    assert reason in message
+    assert "hairlut bake" in message
+
+
+def test_truncated_file_at_every_length(path):
+    whole = path.read_bytes()
+    for length in [*range(0, 64), *range(64, len(whole), 97), len(whole) - 1]:
+        path.write_bytes(whole[:length])
+        message = refusal(path)
+        assert "hairlut bake" in message
+
+
+def test_other_files_and_no_file(path, tmp_path):
+    path.write_text("theta_r_deg,mu_deg\n")
+    assert "not a complete OpenEXR image" in refusal(path)
+    assert "no such file" in refusal(tmp_path / "direct_theta.exr")
+    assert "no such file" in refusal(tmp_path)
+
+
+def test_renamed_file(path, tmp_path):
+    shutil.move(path, tmp_path / "direct_theta.exr")
+    message = refusal(tmp_path / "direct_theta.exr")
+    assert "attribute hairlut.table is 'direct_phi', expected 'direct_theta': rename the file" in message
+
+
+def test_an_image_that_is_no_table(tmp_path):
+    path = tmp_path / "direct_phi.exr"
+    with OpenEXR.File({"compression": OpenEXR.ZIP_COMPRESSION}, {"Y": np.zeros((4, 4), np.float32)}) as file:
+        file.write(str(path))
+    assert "attribute hairlut.format is missing: the file is no hairlut table" in refusal(path)
+
+
+def test_a_failed_write_leaves_the_old_file(path, table, monkeypatch):
+    before = path.read_bytes()
+
+    def fail(source, target):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(os, "replace", fail)
+    with pytest.raises(HairlutError, match=r"direct_phi\.exr: cannot be written: disk full"):
+        exr.write(path, replace(table, parameters="other"))
+    assert path.read_bytes() == before
+    assert [p.name for p in path.parent.iterdir()] == ["direct_phi.exr"]
+
+
+def test_a_wrong_name_is_not_written(tmp_path):
+    table = bake_table(PRINTED.direct_theta, 8, 4, Warp("quartic", 2.0**-10), Cell("linear"))
+    with pytest.raises(HairlutError, match=r"must be named direct_theta\.exr"):
+        exr.write(tmp_path / "theta.exr", table)

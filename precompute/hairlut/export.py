@@ -21,6 +21,7 @@ from .table import Table
 
 TABLES = ("direct_theta", "direct_phi", "multiple_theta")
 AZIMUTHS = {"sum": "HAIRLUT_AZIMUTH_SUM", "difference": "HAIRLUT_AZIMUTH_DIFFERENCE"}
+PIVOTS, LINE = 16, 16  # runtime/src/internal.h
 WARPS = {"quartic": "HAIRLUT_WARP_QUARTIC", "uniform": "HAIRLUT_WARP_UNIFORM"}
 
 
@@ -115,29 +116,24 @@ def _literal(x: float) -> str:
     return f"{text}f" if "." in text or "e" in text else f"{text}.0f"
 
 
-def _index(texels: np.ndarray) -> np.ndarray:
-    """(H, n) what the runtime stores after each row to find the cell of an angle (runtime/src/internal.h)."""
+def _pivots(texels: np.ndarray) -> np.ndarray:
+    """(H, PIVOTS) every step-th texel of each row, by which the runtime finds the cell of an angle."""
     height, width = texels.shape
-    levels = 1
-    while 4 ** (levels + 1) < width - 1:
-        levels += 1
-    parts = []
-    for step in (4**level for level in range(levels, 0, -1)):
-        part = np.full((height, 4 * ((width - 2) // (4 * step) + 1)), np.finfo(np.float32).max, np.float32)
-        inner = texels[:, step : width - 1 : step]
-        part[:, : inner.shape[1]] = inner
-        parts.append(part)
-    return np.concatenate(parts, axis=1)
+    step = -(-(width - 1) // PIVOTS)
+    pivots = np.full((height, PIVOTS), np.finfo(np.float32).max, np.float32)
+    inner = texels[:, step : width - 1 : step]
+    pivots[:, : inner.shape[1]] = inner
+    return pivots
 
 
 def _rows(table: Table) -> str:
     """Rows as the runtime stores them (runtime/src/internal.h)."""
-    rows = np.concatenate([padded(table.texels).astype(np.float32), _index(table.texels)], axis=1)
+    rows = np.concatenate([_pivots(table.texels), padded(table.texels).astype(np.float32)], axis=1)
+    rows = np.pad(rows, ((0, 0), (0, -rows.shape[1] % LINE)))
     lines = [",".join(map(_literal, row)) for row in rows]
     return (
-        f"static const float {_array(table)}[{table.height} * HAIRLUT_STRIDE({table.width})] = {{\n"
-        + ",\n".join(lines)
-        + "};"
+        "static const float HAIRLUT_LINE_ALIGNED "
+        f"{_array(table)}[HAIRLUT_STORED({table.width}, {table.height})] = {{\n" + ",\n".join(lines) + "};"
     )
 
 

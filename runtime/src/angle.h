@@ -8,6 +8,14 @@
 static const float hairlut_two_pi = 6.28318548f;
 static const float hairlut_pi = 3.14159274f;
 static const float hairlut_inverse_two_pi = 0.159154943f;
+/* 2 pi and pi/2 in two parts each; the first part of 2 pi has so few bits that its multiples are exact */
+static const float hairlut_two_pi_high = 6.28125f, hairlut_two_pi_low = 1.93530718e-3f;
+static const float hairlut_half_pi_high = 1.57079637f, hairlut_half_pi_low = -4.37113883e-8f;
+
+/* sin(z)/z in powers of z^2, highest first */
+enum { HAIRLUT_SINE_TERMS = 6 };
+static const float hairlut_sine[HAIRLUT_SINE_TERMS] = {-1.0f / 39916800.0f, 1.0f / 362880.0f, -1.0f / 5040.0f,
+                                                       1.0f / 120.0f,       -1.0f / 6.0f,     1.0f};
 
 static inline int hairlut_is_finite(float x)
 {
@@ -21,12 +29,11 @@ static inline float hairlut_floor(float x)
     return n - (float)(n > x);
 }
 
-/* phi modulo 2 pi, from [low, low + 2 pi). 2 pi is subtracted in two parts, of which the first multiplies without
- * rounding. What no float resolves (phi beyond 2^24, infinity, NaN) gives low. */
+/* phi modulo 2 pi, from [low, low + 2 pi). What no float resolves (phi beyond 2^24, infinity, NaN) gives low. */
 static inline float hairlut_wrap(float phi, float low)
 {
     const float n = hairlut_floor((phi - low) * hairlut_inverse_two_pi);
-    const float r = (phi - n * 6.28125f) - n * 1.93530718e-3f;
+    const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 
@@ -34,11 +41,13 @@ static inline float hairlut_wrap(float phi, float low)
  * rounding would turn it negative and the smallest distance of a float from pi/2 stands in. */
 static inline float hairlut_cos(float theta)
 {
-    const float half_pi_high = 1.57079637f, half_pi_low = -4.37113883e-8f;
-    float z = (half_pi_high - fabsf(theta)) + half_pi_low;
-    z = z > 4.37113883e-8f ? z : 4.37113883e-8f;
+    const float distance = (hairlut_half_pi_high - fabsf(theta)) + hairlut_half_pi_low;
+    const float z = distance > -hairlut_half_pi_low ? distance : -hairlut_half_pi_low;
     const float w = z * z;
-    return z * (1.0f + w * (-1.0f / 6.0f + w * (1.0f / 120.0f + w * (-1.0f / 5040.0f + w * (1.0f / 362880.0f + w * (-1.0f / 39916800.0f))))));
+    float p = hairlut_sine[0];
+    for (int k = 1; k < HAIRLUT_SINE_TERMS; ++k)
+        p = hairlut_sine[k] + w * p;
+    return z * p;
 }
 
 #endif

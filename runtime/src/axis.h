@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "count.h"
 #include "internal.h"
 
 typedef struct hairlut_rows {
@@ -57,17 +58,11 @@ static inline hairlut_rows hairlut_axis_rows(const hairlut_axis *axis, float the
     const float r = hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, 0.0f, axis->row_last);
     int j = (int)r;
     j -= j > axis->height - 2;
-    const int stride = axis->columns + HAIRLUT_ROW_EXTRA;
-    const hairlut_rows rows = {axis->rows + (size_t)j * (size_t)stride, stride, r - (float)j};
+    const hairlut_rows rows = {axis->rows + (size_t)j * (size_t)axis->stride, axis->stride, r - (float)j};
     return rows;
 }
 
-static inline float hairlut_blend(float a, float b, float t)
-{
-    return a + t * (b - a);
-}
-
-/* The same for widths: positive for positive a and b at every t, which the form above is not where b is far below a. */
+/* hairlut_blend for widths: positive for positive a and b at every t, which hairlut_blend is not where b is far below a. */
 static inline float hairlut_blend_width(float a, float b, float t)
 {
     return (1.0f - t) * a + t * b;
@@ -145,32 +140,28 @@ static inline float hairlut_axis_u(const hairlut_axis *axis, int i, float f)
     return hairlut_from_low(i, f) <= hairlut_from_high(axis, i, f) ? m : 1.0f - m;
 }
 
-/* How many of the n blended texels from a on are at most x; n is rounded up to a multiple of 4. A count has no branch
- * that depends on x, and compilers turn the four lanes into a vector. */
-static inline int hairlut_count(const float *a, int stride, float t, float x, int n)
+/* Halves the range of `cells` cells from `first` on in which x lies down to HAIRLUT_PIVOTS cells; its first cell. */
+static inline int hairlut_halve(const float *row, int stride, float t, float x, int first, int *cells)
 {
-    int lane[4] = {0, 0, 0, 0};
-    for (int k = 0; k < n; k += 4)
-        for (int l = 0; l < 4; ++l)
-            lane[l] += hairlut_blend(a[k + l], a[stride + k + l], t) <= x;
-    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+    for (; *cells > HAIRLUT_PIVOTS; *cells -= *cells / 2) {
+        const float *a = row + first + *cells / 2 + 1;
+        first += hairlut_blend(a[0], a[stride], t) <= x ? *cells / 2 : 0;
+    }
+    return first;
 }
 
-/* The cell whose blended texels enclose x: the pivots narrow it down to pivot_step cells, halving to at most 16, a count
- * to one. What the last count takes in beyond its block (never beyond the row: the pivots lie there) is taken back. */
+/* The cell whose blended texels enclose x: the pivots narrow it down to `step` cells, halving (of tables wider than 257)
+ * to 16, a count to one. */
 static inline int hairlut_axis_find(const hairlut_axis *axis, const hairlut_rows *rows, float x)
 {
+    const float *row = rows->a;
     const float t = rows->t;
-    const int stride = rows->stride;
-    int cells = axis->pivot_step;
-    int first = cells * hairlut_count(rows->a + axis->columns + 2, stride, t, x, HAIRLUT_PIVOTS);
-    for (; cells > HAIRLUT_PIVOTS; cells -= cells / 2) {
-        const float *a = rows->a + first + cells / 2 + 1;
-        first += hairlut_blend(a[0], a[stride], t) <= x ? cells / 2 : 0;
-    }
-    int count = hairlut_count(rows->a + first + 2, stride, t, x, cells - 1);
-    count = count < cells - 1 ? count : cells - 1;
-    return first + count < axis->columns - 2 ? first + count : axis->columns - 2;
+    const int stride = rows->stride, step = axis->step;
+    int first = step * hairlut_count(row - HAIRLUT_PIVOTS, stride, t, x, HAIRLUT_PIVOTS);
+    int cells = axis->columns - 1 - first;
+    cells = cells < step ? cells : step;
+    first = hairlut_halve(row, stride, t, x, first, &cells);
+    return first + hairlut_count(row + first + 2, stride, t, x, cells - 1);
 }
 
 /* The fraction of a cell at which x lies; *slope gets dx/df there. The root of the quadratic is that slope. */

@@ -6,21 +6,32 @@
 
 #include "hairlut.h"
 
-enum {
-    HAIRLUT_PIVOTS = 16,
-    HAIRLUT_ROW_EXTRA = 2 + HAIRLUT_PIVOTS /* floats of a stored row that are not texels */
-};
+/* A stored row: the pivots of the search for a cell; one texel before the first, the texels, one after the last, so that
+ * the four texels around any cell are adjacent (luts/FORMAT.md, "Padding"); what fills it up to whole cache lines. Pivot
+ * k is texel (k+1)*step, or HAIRLUT_NO_TEXEL where that is beyond the last cell. A line follows the last row, because
+ * kernels read whole vectors. */
+enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
+#define HAIRLUT_NO_TEXEL FLT_MAX
+#define HAIRLUT_STRIDE(columns) (((columns) + 2 + HAIRLUT_PIVOTS + HAIRLUT_LINE - 1) / HAIRLUT_LINE * HAIRLUT_LINE)
+#define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * (height) + HAIRLUT_LINE)
+#define HAIRLUT_STEP(columns) (((columns) - 2 + HAIRLUT_PIVOTS) / HAIRLUT_PIVOTS)
 
-/* A table ready for sampling. Row j starts at rows[j*(columns + HAIRLUT_ROW_EXTRA)] and holds: one texel before the
- * first, the texels, one after the last, so that the four texels around any cell are adjacent (luts/FORMAT.md,
- * "Padding"); then the pivots of the search for a cell: pivot k is texel (k+1)*pivot_step, or HAIRLUT_NO_PIVOT where
- * that is beyond the last cell. */
+#if defined(__GNUC__)
+#define HAIRLUT_LINE_ALIGNED __attribute__((aligned(64)))
+#elif defined(_MSC_VER)
+#define HAIRLUT_LINE_ALIGNED __declspec(align(64))
+#else
+#define HAIRLUT_LINE_ALIGNED
+#endif
+
+/* A table ready for sampling. */
 typedef struct hairlut_axis {
-    const float *rows;
+    const float *rows; /* the texel before the first of row 0; best if the row's pivots are aligned to a cache line */
     int columns;
     int height;
-    int pivot_step; /* cells between two pivots: (columns - 1) / HAIRLUT_PIVOTS, rounded up */
-    int warp;       /* hairlut_warp */
+    int stride; /* floats from one row to the next */
+    int step;   /* cells between two pivots */
+    int warp;   /* hairlut_warp */
     float row_origin; /* theta_r of row 0 */
     float row_scale;  /* rows per radian of theta_r */
     float row_last;   /* height - 1 */
@@ -34,12 +45,12 @@ typedef struct hairlut_axis {
     float limit;  /* of a cell's curvature, relative to its width */
 } hairlut_axis;
 
-#define HAIRLUT_NO_PIVOT FLT_MAX
-
-/* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. */
-#define HAIRLUT_AXIS(rows_, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_, limit_)      \
+/* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. `stored`
+ * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats. */
+#define HAIRLUT_AXIS(stored, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_, limit_)      \
     {                                                                                                                 \
-        rows_, columns_, height_, ((columns_) - 2 + HAIRLUT_PIVOTS) / HAIRLUT_PIVOTS, warp_, row_origin_, row_scale_, \
+        (stored) + HAIRLUT_PIVOTS, columns_, height_, HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_), warp_,        \
+            row_origin_, row_scale_,                                                                                  \
             (float)((height_) - 1), low_, high_, e_, f0_, k_, 1.0f / (k_), 0.5f * (float)((columns_) - 1), limit_     \
     }
 

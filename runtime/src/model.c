@@ -1,5 +1,6 @@
 /* Models from tables in memory: what a table must fulfil, and the padded copy that the kernels read. */
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "allocator.h"
@@ -100,24 +101,27 @@ hairlut_result hairlut_validate(const hairlut_table *table, char *message)
     return result;
 }
 
-/* A row as it is stored: the texels beyond both ends are such that a blended end cell takes the curvature
+/* A row as internal.h lays it out. The texels beyond both ends are such that a blended end cell takes the curvature
  * d - d_neighbour. */
-static void store_row(float *stored, const float *row, int width, int pivot_step)
+static void store_row(float *stored, const float *row, int width)
 {
-    memcpy(stored + 1, row, (size_t)width * sizeof *row);
+    for (int k = 0; k < HAIRLUT_PIVOTS; ++k) {
+        const int i = (k + 1) * HAIRLUT_STEP(width);
+        stored[k] = i <= width - 2 ? row[i] : HAIRLUT_NO_TEXEL;
+    }
+    float *padded = stored + HAIRLUT_PIVOTS;
+    memcpy(padded + 1, row, (size_t)width * sizeof *row);
     const double first = row[0], second = row[1], third = row[2];
     const double last = row[width - 1], last1 = row[width - 2], last2 = row[width - 3];
-    stored[0] = (float)(first - 4.0 * (second - first) + 3.0 * (third - second));
-    stored[width + 1] = (float)(last + 4.0 * (last - last1) - 3.0 * (last1 - last2));
-    for (int k = 0; k < HAIRLUT_PIVOTS; ++k) {
-        const int i = (k + 1) * pivot_step;
-        stored[width + 2 + k] = i <= width - 2 ? row[i] : HAIRLUT_NO_PIVOT;
-    }
+    padded[0] = (float)(first - 4.0 * (second - first) + 3.0 * (third - second));
+    padded[width + 1] = (float)(last + 4.0 * (last - last1) - 3.0 * (last1 - last2));
+    for (int k = HAIRLUT_PIVOTS + width + 2; k < HAIRLUT_STRIDE(width); ++k)
+        stored[k] = 0.0f;
 }
 
 static size_t stored_floats(const hairlut_table *t)
 {
-    return (size_t)t->height * (size_t)(t->width + HAIRLUT_ROW_EXTRA);
+    return (size_t)HAIRLUT_STORED(t->width, t->height);
 }
 
 /* Fills an axis whose rows go to `rows`; returns the end of what it filled. */
@@ -130,8 +134,9 @@ static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *rows
                      (float)scale.e, (float)scale.f0, (float)scale.k, t->cell_limit);
     *axis = filled;
     for (int j = 0; j < t->height; ++j)
-        store_row(rows + (size_t)j * (size_t)(t->width + HAIRLUT_ROW_EXTRA), t->texels + (size_t)j * (size_t)t->width,
-                  t->width, axis->pivot_step);
+        store_row(rows + (size_t)j * (size_t)axis->stride, t->texels + (size_t)j * (size_t)t->width, t->width);
+    for (size_t k = stored_floats(t) - HAIRLUT_LINE; k < stored_floats(t); ++k)
+        rows[k] = 0.0f;
     return rows + stored_floats(t);
 }
 
@@ -179,13 +184,14 @@ hairlut_result hairlut_model_create(const hairlut_model_desc *desc, const hairlu
         return result;
     const size_t floats = stored_floats(&desc->direct_theta) + stored_floats(&desc->direct_phi)
                           + stored_floats(&desc->multiple_theta);
-    /* one block: the struct, whose size is a multiple of a float's, then the rows */
+    /* one block: the struct, then the rows from the next cache line on */
+    const size_t line = HAIRLUT_LINE * sizeof(float);
     void *memory;
-    result = hairlut_allocate(&a, sizeof(hairlut_model) + floats * sizeof(float), &memory, message);
+    result = hairlut_allocate(&a, sizeof(hairlut_model) + line + floats * sizeof(float), &memory, message);
     if (result != HAIRLUT_OK)
         return result;
     hairlut_model *model = memory;
-    float *rows = (float *)(model + 1);
+    float *rows = (float *)(model + 1) + (line - (uintptr_t)(model + 1) % line) % line / sizeof(float);
     rows = build_axis(&model->direct_theta, &desc->direct_theta, rows);
     rows = build_axis(&model->direct_phi, &desc->direct_phi, rows);
     build_axis(&model->multiple_theta, &desc->multiple_theta, rows);

@@ -1,0 +1,38 @@
+/* The kernels behind the _n functions. Private: tests and benchmarks reach it through the static library. */
+#ifndef HAIRLUT_BATCH_H
+#define HAIRLUT_BATCH_H
+
+#include "hairlut.h"
+
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
+#define HAIRLUT_BATCH_X86 1
+#elif defined(__aarch64__) || defined(_M_ARM64)
+#define HAIRLUT_BATCH_NEON 1
+#endif
+
+/* One set of kernels; each member is a function of hairlut.h. */
+typedef struct hairlut_batch {
+    const char *name;
+    void (*sample_direct)(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
+                          const float *u_theta, const float *u_phi, hairlut_samples out);
+    void (*sample_multiple)(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
+                            const float *u_theta, const float *u_phi, hairlut_samples out);
+    void (*pdf_direct)(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
+                       const float *theta_i, const float *phi_i, float *pdf_angle);
+    void (*pdf_multiple)(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
+                         const float *theta_i, const float *phi_i, float *pdf_angle);
+} hairlut_batch;
+
+extern const hairlut_batch hairlut_batch_portable;
+#ifdef HAIRLUT_BATCH_X86
+extern const hairlut_batch hairlut_batch_avx2;
+extern const hairlut_batch hairlut_batch_avx512;
+#endif
+#ifdef HAIRLUT_BATCH_NEON
+extern const hairlut_batch hairlut_batch_neon;
+#endif
+
+/* The sets that this processor runs, narrowest first: index 0 is the portable one. NULL from the number of sets on. */
+const hairlut_batch *hairlut_batch_level(int level);
+
+#endif

@@ -1,0 +1,10 @@
+/* The kernels in AVX2. Compiled with -mavx2 -mbmi2 -mpopcnt. */
+#include "batch.h"
+
+#ifdef HAIRLUT_BATCH_X86
+#include "simd_avx2.h"
+
+#include "batch_kernel.h"
+
+const hairlut_batch hairlut_batch_avx2 = {"avx2", sample_direct, sample_multiple, pdf_direct, pdf_multiple};
+#endif

@@ -27,7 +27,7 @@ from .warp import Warp
 DEFAULT_TOLERANCE = 1e-4
 DEFAULT_LIMIT = 256
 CELL = Cell("quadratic", 0.9)
-MIN_STEPS = 4.0
+MIN_STEPS = 2.0
 EXPONENTS = range(-24, -9)  # of e
 FIRST_EXPONENT = -16
 PROBE_HEIGHT = 33  # rows on which a width alone is judged
@@ -59,6 +59,13 @@ def ladder(limit: int) -> list[int]:
     return [side for side in sides if side <= limit]
 
 
+def heights(lobe: Lobe, limit: int) -> list[int]:
+    """Heights considered, up to limit: the ladder, or those whose rows fall on the lobe's own rows if it has any."""
+    if lobe.own_height and lobe.own_height <= limit:
+        return list(range(lobe.own_height, limit + 1, lobe.own_height - 1))
+    return ladder(limit)
+
+
 def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cell: Cell = CELL) -> Choice:
     """The table of fewest texels with V <= tolerance and sides of the ladder up to limit; ToleranceError if
     none."""
@@ -69,7 +76,7 @@ def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cel
     trials = _Trials(lobe, cell)
     width, height, exponent = _smallest_size(trials, tolerance, limit)
     while (variance := trials.variance(width, height, exponent, BETWEEN)) > tolerance:
-        taller = [side for side in ladder(limit) if side > height]
+        taller = [side for side in heights(lobe, limit) if side > height]
         if not taller:
             raise _unmet(lobe, tolerance, limit, variance, width, height)
         height = taller[0]
@@ -147,10 +154,11 @@ def _smallest_size(trials: _Trials, tolerance: float, limit: int) -> tuple[int, 
     """(width, height, exponent) of the fewest texels, judged on rows and midway between them."""
     widths = _widths(trials, tolerance, limit)
     best, closest = None, (np.inf, limit, limit)
-    height = ladder(limit)[0]
+    height = heights(trials.lobe, limit)[0]
     for width, exponent in reversed(widths):
         tallest = limit if best is None else (best[0] * best[1] - 1) // width
-        found = _lowest(partial(_searched, trials, width, exponent), tolerance, height, tallest)
+        among = [side for side in heights(trials.lobe, limit) if height <= side <= tallest]
+        found = _lowest(partial(_searched, trials, width, exponent), tolerance, among)
         if found is None:
             if best is None:
                 closest = min(closest, (_searched(trials, width, exponent, limit), width, limit))
@@ -183,10 +191,8 @@ def _widths(trials: _Trials, tolerance: float, limit: int) -> list[tuple[int, in
     return widths
 
 
-def _lowest(variance: Callable[[int], float], tolerance: float, start: int, tallest: int) -> int | None:
-    """The lowest height of the ladder, from start to tallest, that meets the tolerance; None if tallest does
-    not."""
-    heights = [side for side in ladder(tallest) if side >= start]
+def _lowest(variance: Callable[[int], float], tolerance: float, heights: list[int]) -> int | None:
+    """The lowest of these ascending heights that meets the tolerance; None if the last does not."""
     low, high, step = 0, 0, 1
     while high < len(heights) and variance(heights[high]) > tolerance:
         low, high, step = high + 1, high + step, 2 * step

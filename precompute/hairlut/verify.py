@@ -1,0 +1,139 @@
+"""A file checked again from itself alone: its header names the lobe, the lobe says what every texel must be.
+
+Nothing that the bake computed is believed. The lobe is found by the model and table that the header names;
+its formula, domain and range must be the header's. Every texel is compared with the quantile of its row, and
+the errors of the table are measured and compared with those that the header claims.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from . import exr
+from .errors import HairlutError
+from .export import TABLES
+from .lobes import MODELS, Array, Lobe, Model
+from .measure import BETWEEN, Errors, Exact, inclinations, measure
+from .table import Table
+
+STEPS = 1.0  # of a float by which a texel may miss the quantile
+NOISE = 1e-12  # rad, of the quantile itself
+CLAIM_SLACK = 1.01
+CLAIM_NOISE = 1e-9
+
+
+@dataclass
+class Report:
+    """What was found out about one file. problems: what is wrong, and where; empty if the file is good."""
+
+    path: Path
+    problems: list[str] = field(default_factory=list)
+    size: str = ""
+    measured: dict[str, float] = field(default_factory=dict)
+    claimed: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def ok(self) -> bool:
+        return not self.problems
+
+
+def verify(path: Path, model: Model | None = None) -> list[Report]:
+    """Reports on a file, or on every .exr file below a directory. model: where the header names no built-in
+    one."""
+    path = Path(path)
+    files = sorted(path.rglob("*.exr")) if path.is_dir() else [path]
+    if not files:
+        raise HairlutError(f"{path}: no .exr file in this directory: expected <model>/<table>.exr")
+    models = MODELS | ({model.name: model} if model else {})
+    reports = [verify_file(file, models) for file in files]
+    if path.is_dir():
+        for directory in sorted({file.parent for file in files}):
+            reports += _incomplete(directory)
+    return reports
+
+
+def _incomplete(directory: Path) -> list[Report]:
+    missing = [name for name in TABLES if not (directory / f"{name}.exr").is_file()]
+    return [
+        Report(directory / f"{name}.exr", ["the file is missing: bake the model again"]) for name in missing
+    ]
+
+
+def verify_file(path: Path, models: dict[str, Model]) -> Report:
+    """The report on one file."""
+    report = Report(path)
+    try:
+        table, report.claimed = exr.read(path)
+        lobe = _lobe(path, table, models)
+    except HairlutError as error:
+        report.problems.append(str(error).removeprefix(f"{path}: "))
+        return report
+    report.size = f"{table.width}x{table.height}"
+    exact = Exact(lobe, inclinations(table.theta_r_range, table.height, BETWEEN))
+    report.problems += _texels(table, exact.quantiles(*table.warp.knots(table.width))[:: BETWEEN + 1])
+    errors = measure(table, lobe, exact=exact)
+    report.measured = errors.summary()
+    report.problems += _claims(errors, report.claimed)
+    return report
+
+
+def _lobe(path: Path, table: Table, models: dict[str, Model]) -> Lobe:
+    """The lobe that the header names; HairlutError where header, file name or directory contradict it."""
+    if table.model not in models:
+        raise HairlutError(
+            f"attribute hairlut.model is {table.model!r}, expected one of {', '.join(models)}: "
+            "name the model's file with --model"
+        )
+    directory = path.resolve().parent.name
+    if directory in models and directory != table.model:
+        raise HairlutError(
+            f"attribute hairlut.model is {table.model!r}, but the directory is {directory!r}: "
+            "a table of another model stands under this one's name"
+        )
+    lobe = getattr(models[table.model], table.name)
+    expected = {
+        "angle": (table.angle, lobe.angle),
+        "azimuth": (table.azimuth, lobe.azimuth),
+        "domain": (table.domain, lobe.domain),
+        "theta_r_range": (table.theta_r_range, lobe.theta_r_range),
+        "parameters": (table.parameters, lobe.formula),
+    }
+    for name, (found, wanted) in expected.items():
+        if found != wanted:
+            raise HairlutError(
+                f"attribute hairlut.{name} is {found!r}, expected {wanted!r}: bake the table again"
+            )
+    return lobe
+
+
+def _texels(table: Table, quantiles: Array) -> list[str]:
+    """One problem for each wrong row."""
+    off = abs(table.texels - quantiles)
+    wrong = off > STEPS * np.spacing(abs(table.texels)) + NOISE
+    return [_wrong_row(table, quantiles, off, j, wrong[j]) for j in np.flatnonzero(wrong.any(axis=1))]
+
+
+def _wrong_row(table: Table, quantiles: Array, off: Array, j: int, wrong: Array) -> str:
+    where = f"row {j} (theta_r = {table.theta_r[j]:.6g} rad)"
+    other = int(abs(table.texels[j] - quantiles).max(axis=1).argmin())
+    if other != j and abs(table.texels[j] - quantiles[other]).max() < 1e-6:
+        return f"{where} holds the quantiles of row {other}"
+    i = int(off[j].argmax())
+    return (
+        f"{where}: {wrong.sum()} of {table.width} texels are wrong, worst in column {i}: "
+        f"{table.texels[j, i]:.9g}, expected {quantiles[j, i]:.9g}, {off[j, i]:.1e} rad off"
+    )
+
+
+def _claims(errors: Errors, claimed: dict[str, float]) -> list[str]:
+    """One problem for each error that the header does not claim, or claims too small."""
+    problems = []
+    for name, value in errors.summary().items():
+        if name not in claimed:
+            problems.append(f"attribute hairlut.error.{name} is missing, measured {value:.3e}")
+        elif not value <= CLAIM_SLACK * claimed[name] + CLAIM_NOISE:
+            problems.append(
+                f"error {name} is {value:.3e}, attribute hairlut.error.{name} claims {claimed[name]:.3e}"
+            )
+    return problems

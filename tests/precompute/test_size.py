@@ -1,0 +1,173 @@
+"""The tolerance is met with nothing to spare, and the sizes that the project promises have the errors it
+promises."""
+
+import time
+
+import numpy as np
+import pytest
+
+from hairlut import size
+from hairlut.cli import main
+from hairlut.errors import HairlutError
+from hairlut.exr import read
+from hairlut.lobes import FITTED, MODELS
+from hairlut.measure import flat_cells, measure, narrowest_cell
+from hairlut.size import CELL, ToleranceError, ladder, smallest_table, table_of_size
+from hairlut.table import bake_table
+from hairlut.warp import Warp
+
+EXPONENTS = [float(2.0**e) for e in size.EXPONENTS]
+
+
+def test_shipped_tables_meet_the_default_tolerance(shipped):
+    """Measured again: V, weight, and the errors that the header claims."""
+    table, _, lobe, claimed = shipped
+    errors = measure(table, lobe)
+    assert errors.relative_variance <= size.DEFAULT_TOLERANCE
+    assert errors.largest_weight <= 12
+    assert errors.lost_mass == 0.0
+    assert narrowest_cell(table.texels) >= size.MIN_STEPS
+    assert table.texels.nbytes <= 16384
+    assert table.warp.e in EXPONENTS
+    for name, value in errors.summary().items():
+        assert claimed[name] == pytest.approx(value, rel=1e-3)
+
+
+def test_64x64(lobe):
+    """Stretch target of V <= 1e-4 with full support, on every row and three points between rows."""
+    choice = table_of_size(lobe, 64, 64)
+    assert choice.table.texels.shape == (64, 64)
+    assert len(choice.errors.theta_r) == 4 * 63 + 1
+    assert choice.errors.relative_variance <= 1e-4
+    assert choice.errors.largest_weight <= 12
+    assert choice.errors.lost_mass == 0.0
+    assert flat_cells(choice.table.texels) == 0
+
+
+def test_256x256(lobe):
+    """One e for all lobes: the choice of e is tested at 64x64, and its search would take longer here."""
+    table = bake_table(lobe, 256, 256, Warp("quartic", 2.0**-17), CELL)
+    errors = measure(table, lobe, quantiles=False)
+    assert errors.relative_variance <= 3e-5
+    assert errors.largest_weight <= 12
+    assert flat_cells(table.texels) == 0
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+def test_no_smaller_table_of_the_same_width_or_height_meets_the_tolerance(tolerance):
+    lobe = FITTED.direct_theta
+    choice = smallest_table(lobe, tolerance)
+    assert choice.errors.relative_variance <= tolerance
+    width, height = choice.table.width, choice.table.height
+    narrower, lower = (max(side for side in ladder(512) if side < full) for full in (width, height))
+    for smaller in ((narrower, height), (width, lower)):
+        best = min(
+            measure(
+                bake_table(lobe, *smaller, Warp("quartic", e), CELL),
+                lobe,
+                quantiles=False,
+            ).relative_variance
+            for e in EXPONENTS
+        )
+        assert best > tolerance
+    larger_e = bake_table(lobe, width, height, Warp("quartic", 2 * choice.table.warp.e), CELL)
+    assert measure(larger_e, lobe, quantiles=False).relative_variance > tolerance
+
+
+def test_a_looser_tolerance_takes_fewer_texels(lobe):
+    texels = [smallest_table(lobe, tolerance).table.texels.size for tolerance in (1e-2, 1e-3)]
+    assert texels[0] < texels[1]
+
+
+def test_an_unattainable_tolerance_says_how_close_it_came():
+    with pytest.raises(
+        ToleranceError,
+        match=r"no table of up to 24x24 has V <= 1e-06; the closest, \d+x\d+, has",
+    ):
+        smallest_table(FITTED.multiple_theta, 1e-6, limit=24)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan])
+def test_a_tolerance_that_is_none(tolerance):
+    with pytest.raises(HairlutError, match="expected a relative variance above 0"):
+        smallest_table(FITTED.multiple_theta, tolerance)
+
+
+def test_the_search_for_all_six_tables_is_fast():
+    started = time.process_time()
+    for model in MODELS.values():
+        for each in model.lobes:
+            smallest_table(each, size.DEFAULT_TOLERANCE)
+    assert time.process_time() - started < 60  # 6 s on an idle 2.5 GHz core
+
+
+def test_ladder_steps():
+    sides = np.array(ladder(512))
+    assert sides[0] == 8
+    assert sides[-1] == 512
+    assert (np.diff(sides)[sides[:-1] >= 64] / sides[:-1][sides[:-1] >= 64] <= 1 / 16).all()
+
+
+# ---- the command
+# ----------------------------------------------------------------------------------------------
+
+
+def test_bake_says_what_it_chose_and_why(tmp_path, capsys):
+    assert main(["bake", "--model", "fitted", "--tolerance", "1e-2", "--out", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    assert text.count("smallest with V <= 0.01") == 3
+    table, errors = read(tmp_path / "fitted" / "direct_phi.exr")
+    assert f"{table.width}x{table.height}" in text
+    assert errors["relative_variance"] <= 1e-2
+
+
+def test_bake_fails_and_writes_nothing_where_the_tolerance_cannot_be_met(tmp_path, capsys):
+    command = [
+        "bake",
+        "--model",
+        "fitted",
+        "--tolerance",
+        "1e-6",
+        "--max-size",
+        "16",
+        "--out",
+        str(tmp_path),
+    ]
+    assert main(command) == 1
+    assert "the closest" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (["--size", "3x64"], "expected a width of 4"),
+        (["--warp", "uniform"], "give --size too"),
+        (["--size", "8x8", "--warp", "cubic"], "is not known"),
+        (["--size", "8x8", "--cell", "quadratic limit=2"], "expected a limit"),
+        (["--tolerance", "0"], "above 0"),
+    ],
+)
+def test_bake_refuses_wrong_use(tmp_path, capsys, options, complaint):
+    assert main(["bake", "--model", "fitted", "--out", str(tmp_path), *options]) == 2
+    assert complaint in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_bake_with_a_warp_measures_that_warp(tmp_path, capsys):
+    command = [
+        "bake",
+        "--model",
+        "fitted",
+        "--size",
+        "16x16",
+        "--warp",
+        "uniform",
+        "--cell",
+        "linear",
+    ]
+    assert main([*command, "--out", str(tmp_path)]) == 0
+    assert "size and warp as asked" in capsys.readouterr().out
+    table, errors = read(tmp_path / "fitted" / "direct_theta.exr")
+    assert str(table.warp) == "uniform"
+    assert errors["relative_variance"] > 0.05

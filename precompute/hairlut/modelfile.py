@@ -112,7 +112,8 @@ def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
             f"expected the domain's {low:.6g} to {high:.6g} rad"
         )
     text = f"{mass.shape[1]} measured cells at {len(table.theta_r)} theta_r, quantiles blended between them"
-    return density(name, log_density=table, formula=formula or text, breakpoints=table.breakpoints)
+    lobe = density(name, log_density=table, formula=formula or text, breakpoints=table.breakpoints)
+    return replace(lobe, own_height=table.own_height)
 
 
 def _function(value) -> Callable:

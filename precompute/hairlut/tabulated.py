@@ -22,6 +22,9 @@ MERGE = 1e-4, 1e-8
 """Knots of a blended row that are closer than this part of the domain, or of the mass, are one."""
 
 
+MAX_HEIGHT = 256
+
+
 class TabulatedDensity:
     """log_density(x, theta_r) of rows of cell masses, and its breakpoints(theta_r).
 
@@ -69,6 +72,15 @@ class TabulatedDensity:
         for row, x in zip(filled, knots, strict=True):
             row[: len(x)] = x
         return filled
+
+    @property
+    def own_height(self) -> int:
+        """The least height of a table over all theta_r that has these rows; 0 above MAX_HEIGHT."""
+        for height in range(2, MAX_HEIGHT + 1):
+            at = (self.theta_r / np.pi + 0.5) * (height - 1)
+            if (abs(at - np.rint(at)) < 1e-6 * height).all():
+                return height
+        return 0
 
     def row(self, theta_r: float) -> CubicHermiteSpline:
         """The cumulative mass of the row at theta_r as a piecewise cubic of x."""

@@ -9,7 +9,8 @@ function(hairlut_library name building)
     set_target_properties(${name}_objects PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF C_VISIBILITY_PRESET hidden
         POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${name}_objects PRIVATE
-        $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -fno-math-errno>)
+        $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow
+            -fno-math-errno -ffp-contract=off>)
     string(REPLACE "hairlut_" "" alias ${name})
     foreach(form objects shared static)
         target_include_directories(${name}_${form} PUBLIC

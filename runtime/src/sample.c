@@ -35,7 +35,8 @@ float hairlut_pdf_multiple(const hairlut_model *model, float theta_r, float phi_
 void hairlut_invert_direct(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i, float u[2])
 {
     u[0] = hairlut_axis_invert(&model->direct_theta, theta_r, theta_i);
-    u[1] = hairlut_axis_invert(&model->direct_phi, theta_r, hairlut_relative_azimuth(model, phi_r, phi_i));
+    const float phi = phi_i == phi_i ? hairlut_relative_azimuth(model, phi_r, phi_i) : 0.0f;
+    u[1] = hairlut_axis_invert(&model->direct_phi, theta_r, phi);
 }
 
 void hairlut_invert_multiple(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i,

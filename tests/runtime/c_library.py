@@ -1,0 +1,204 @@
+"""The C library as the tests see it: built once a session, called through ctypes on numpy arrays."""
+
+import ctypes
+import os
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+RUNTIME = ROOT / "runtime"
+BUILD = ROOT / "build"
+HERE = Path(__file__).resolve().parent
+MODELS = ("printed", "fitted")
+AXES = ("direct_theta", "direct_phi", "multiple_theta")
+LOBES = ("direct", "multiple")
+MESSAGE_SIZE = 512
+OK, ARGUMENT, MEMORY, FILE, ATTRIBUTE, VERSION, TABLE, UNSUPPORTED = range(8)
+SAMPLE = np.dtype([(name, np.float32) for name in ("theta_i", "phi_i", "pdf_angle", "pdf_solid_angle")])
+FLAGS = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
+
+
+def tool(name: str) -> str | None:
+    """The path of a program, also of one that pip installed beside this Python; None if there is none."""
+    beside = Path(sys.executable).parent / name
+    return str(beside) if os.access(beside, os.X_OK) else shutil.which(name)
+
+
+def run(*command: str | Path, timeout: float = 300, **options) -> subprocess.CompletedProcess:
+    """Runs a command and shows its output if it fails."""
+    done = subprocess.run(
+        [str(word) for word in command], text=True, capture_output=True, timeout=timeout, **options
+    )
+    assert done.returncode == 0, f"{' '.join(map(str, command))}\n{done.stdout}\n{done.stderr}"
+    return done
+
+
+def cmake(source: Path, build: Path, *definitions: str, targets: tuple[str, ...] = ()) -> Path:
+    """Configures and builds a CMake project with the Ninja that is at hand; returns the build folder."""
+    run(
+        tool("cmake"),
+        "-S",
+        source,
+        "-B",
+        build,
+        "-G",
+        "Ninja",
+        f"-DCMAKE_MAKE_PROGRAM={tool('ninja')}",
+        *definitions,
+    )
+    run(tool("cmake"), "--build", build, *(["--target", *targets] if targets else []))
+    return build
+
+
+@cache
+def build() -> Path:
+    """The build folder that `make build` fills, up to date."""
+    return cmake(RUNTIME, BUILD / "runtime", "-DCMAKE_BUILD_TYPE=Release")
+
+
+def has_exr() -> bool:
+    """Whether the loader was built."""
+    return any(build().glob("libhairlut_exr.*"))
+
+
+@cache
+def core() -> ctypes.CDLL:
+    """libhairlut."""
+    library = ctypes.CDLL(str(_shared(build(), "hairlut")), mode=ctypes.RTLD_GLOBAL)
+    library.hairlut_builtin.restype = ctypes.c_void_p
+    library.hairlut_builtin.argtypes = [ctypes.c_char_p]
+    library.hairlut_free.argtypes = [ctypes.c_void_p]
+    library.hairlut_free.restype = None
+    library.hairlut_result_string.restype = ctypes.c_char_p
+    library.hairlut_pdf_to_solid_angle.restype = ctypes.c_float
+    library.hairlut_pdf_to_solid_angle.argtypes = [ctypes.c_float, ctypes.c_float]
+    return library
+
+
+@cache
+def exr() -> ctypes.CDLL:
+    """libhairlut_exr."""
+    core()
+    return ctypes.CDLL(str(_shared(build(), "hairlut_exr")))
+
+
+@cache
+def loops() -> ctypes.CDLL:
+    """loops.c, linked against libhairlut."""
+    core()
+    folder = BUILD / "tests"
+    folder.mkdir(parents=True, exist_ok=True)
+    out = folder / "loops.so"
+    include = [f"-I{RUNTIME / 'include'}", f"-I{RUNTIME / 'src'}"]
+    compiler = os.environ.get("CC", "cc")
+    run(compiler, *FLAGS, "-fno-math-errno", "-fPIC", "-shared", *include, HERE / "loops.c", "-o", out,
+        f"-L{build()}", "-lhairlut", f"-Wl,-rpath,{build()}")  # fmt: skip
+    return ctypes.CDLL(str(out))
+
+
+def _shared(folder: Path, name: str) -> Path:
+    suffix = "dylib" if sys.platform == "darwin" else "so"
+    return folder / f"lib{name}.{suffix}"
+
+
+class LoadError(Exception):
+    """A result that is not HAIRLUT_OK, with the message beside it."""
+
+    def __init__(self, result: int, message: str) -> None:
+        super().__init__(f"{result}: {message}")
+        self.result, self.message = result, message
+
+
+class Model:
+    """A hairlut_model; calls take scalars or arrays that broadcast, and return float32 arrays."""
+
+    def __init__(self, pointer: int, name: str, owned: bool) -> None:
+        self.pointer, self.name, self.owned = ctypes.c_void_p(pointer), name, owned
+
+    def __repr__(self) -> str:
+        return self.name
+
+    def __del__(self) -> None:
+        if self.owned:
+            core().hairlut_free(self.pointer)
+
+    def sample(self, lobe: str, theta_r, phi_r, u_theta, u_phi) -> np.ndarray:
+        """Records of SAMPLE."""
+        inputs = _floats(theta_r, phi_r, u_theta, u_phi)
+        out = np.empty(inputs[0].shape, SAMPLE)
+        self._loop("loop_sample", LOBES.index(lobe), *inputs, out)
+        return out
+
+    def pdf(self, lobe: str, theta_r, phi_r, theta_i, phi_i) -> np.ndarray:
+        """Densities per rad^2."""
+        inputs = _floats(theta_r, phi_r, theta_i, phi_i)
+        out = np.empty_like(inputs[0])
+        self._loop("loop_pdf", LOBES.index(lobe), *inputs, out)
+        return out
+
+    def invert(self, lobe: str, theta_r, phi_r, theta_i, phi_i) -> tuple[np.ndarray, np.ndarray]:
+        """(u_theta, u_phi)."""
+        inputs = _floats(theta_r, phi_r, theta_i, phi_i)
+        out = np.empty((*inputs[0].shape, 2), np.float32)
+        self._loop("loop_invert", LOBES.index(lobe), *inputs, out)
+        return out[..., 0], out[..., 1]
+
+    def axis_sample(self, axis: str, theta_r, u) -> tuple[np.ndarray, np.ndarray]:
+        """(angle, density per rad) of one table."""
+        inputs = _floats(theta_r, u)
+        x, pdf = np.empty_like(inputs[0]), np.empty_like(inputs[0])
+        self._loop("axis_sample", AXES.index(axis), *inputs, x, pdf)
+        return x, pdf
+
+    def axis_pdf(self, axis: str, theta_r, x) -> np.ndarray:
+        """Density per rad of one table."""
+        inputs = _floats(theta_r, x)
+        out = np.empty_like(inputs[0])
+        self._loop("axis_pdf", AXES.index(axis), *inputs, out)
+        return out
+
+    def axis_invert(self, axis: str, theta_r, x) -> np.ndarray:
+        """u of an angle of one table."""
+        inputs = _floats(theta_r, x)
+        out = np.empty_like(inputs[0])
+        self._loop("axis_invert", AXES.index(axis), *inputs, out)
+        return out
+
+    def axis_cell(self, axis: str, theta_r, x) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(index, width, curvature) of the cell that holds an angle of one table."""
+        inputs = _floats(theta_r, x)
+        index = np.empty(inputs[0].shape, np.int32)
+        d, c = np.empty_like(inputs[0]), np.empty_like(inputs[0])
+        self._loop("axis_cell", AXES.index(axis), *inputs, index, d, c)
+        return index, d, c
+
+    def _loop(self, function: str, which: int, *arrays: np.ndarray) -> None:
+        pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in arrays]
+        getattr(loops(), function)(self.pointer, which, ctypes.c_size_t(arrays[0].size), *pointers)
+
+
+def _floats(*values) -> list[np.ndarray]:
+    arrays = np.broadcast_arrays(*(np.asarray(value, np.float32) for value in values))
+    return [np.array(np.atleast_1d(array), np.float32, order="C") for array in arrays]
+
+
+def builtin(name: str) -> Model:
+    """A compiled-in model."""
+    pointer = core().hairlut_builtin(name.encode())
+    assert pointer, name
+    return Model(pointer, name, owned=False)
+
+
+def load(directory: Path) -> Model:
+    """A model from table files; LoadError if they are refused."""
+    out, message = ctypes.c_void_p(1), ctypes.create_string_buffer(MESSAGE_SIZE)
+    result = exr().hairlut_load_with(os.fsencode(directory), None, ctypes.byref(out), message)
+    if result != OK:
+        assert out.value is None
+        raise LoadError(result, message.value.decode(errors="replace"))
+    return Model(out.value, str(directory), owned=True)

@@ -1,0 +1,76 @@
+/* Loops over the one-direction functions, and the single axes behind them, so that tests can ask for a million at once.
+ * Arrays are n floats; `lobe` is 0 for direct, 1 for multiple; `axis` is 0 direct_theta, 1 direct_phi, 2 multiple_theta. */
+#include "axis.h"
+
+#if defined(_WIN32)
+#define LOOP __declspec(dllexport)
+#else
+#define LOOP __attribute__((visibility("default")))
+#endif
+
+LOOP void loop_sample(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
+                      const float *u_theta, const float *u_phi, hairlut_sample *out)
+{
+    for (size_t i = 0; i < n; ++i)
+        out[i] = lobe ? hairlut_sample_multiple(model, theta_r[i], phi_r[i], u_theta[i], u_phi[i])
+                      : hairlut_sample_direct(model, theta_r[i], phi_r[i], u_theta[i], u_phi[i]);
+}
+
+LOOP void loop_pdf(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
+                   const float *theta_i, const float *phi_i, float *pdf)
+{
+    for (size_t i = 0; i < n; ++i)
+        pdf[i] = lobe ? hairlut_pdf_multiple(model, theta_r[i], phi_r[i], theta_i[i], phi_i[i])
+                      : hairlut_pdf_direct(model, theta_r[i], phi_r[i], theta_i[i], phi_i[i]);
+}
+
+LOOP void loop_invert(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
+                      const float *theta_i, const float *phi_i, float *u)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (lobe)
+            hairlut_invert_multiple(model, theta_r[i], phi_r[i], theta_i[i], phi_i[i], u + 2 * i);
+        else
+            hairlut_invert_direct(model, theta_r[i], phi_r[i], theta_i[i], phi_i[i], u + 2 * i);
+    }
+}
+
+static const hairlut_axis *axis_of(const hairlut_model *model, int axis)
+{
+    return axis == 0 ? &model->direct_theta : axis == 1 ? &model->direct_phi : &model->multiple_theta;
+}
+
+LOOP void axis_sample(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *u, float *x, float *pdf)
+{
+    for (size_t i = 0; i < n; ++i) {
+        const hairlut_draw draw = hairlut_axis_sample(axis_of(model, axis), theta_r[i], u[i]);
+        x[i] = draw.x;
+        pdf[i] = draw.pdf;
+    }
+}
+
+LOOP void axis_pdf(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, float *pdf)
+{
+    for (size_t i = 0; i < n; ++i)
+        pdf[i] = hairlut_axis_pdf(axis_of(model, axis), theta_r[i], x[i]);
+}
+
+LOOP void axis_invert(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, float *u)
+{
+    for (size_t i = 0; i < n; ++i)
+        u[i] = hairlut_axis_invert(axis_of(model, axis), theta_r[i], x[i]);
+}
+
+/* The cell that holds x: its width and curvature, and du/dcolumn at x. */
+LOOP void axis_cell(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, int *index, float *d,
+                    float *c)
+{
+    for (size_t i = 0; i < n; ++i) {
+        const hairlut_axis *a = axis_of(model, axis);
+        const hairlut_rows rows = hairlut_axis_rows(a, theta_r[i]);
+        index[i] = hairlut_axis_find(a, &rows, x[i]);
+        const hairlut_cell cell = hairlut_axis_cell(a, &rows, index[i]);
+        d[i] = cell.d;
+        c[i] = cell.c;
+    }
+}

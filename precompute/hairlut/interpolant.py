@@ -98,9 +98,7 @@ class Cells:
 
     def du_at(self, i: Array, f: Array) -> Array:
         """du/dcolumn at the fractions f of the cells i, broadcast against each other."""
-        return self.table.warp.slope(
-            np.minimum(i + f, (self.table.width - 2 - i) + (1 - f)), self.table.width
-        )
+        return self.table.warp.du(i, f, self.table.width)
 
 
 def _angle(x0: Array, d: Array, c: Array, f: Array) -> Array:
@@ -142,18 +140,9 @@ def sample(table: "Table", theta_r: Array, u: Array) -> tuple[Array, Array]:
 def sample_tail(table: "Table", theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
     """As sample, for u = m, or u = 1 - m where upper; all (n,). Both tails keep the precision of m."""
     read = cells(table, theta_r)
-    i, f, c = place(table, m, upper)
+    i, f = table.warp.place(m, upper, table.width)
     n = np.arange(len(i))
-    return read.angle_at(n, i, f), table.warp.slope(c, table.width) / read.slope_at(n, i, f)
-
-
-def place(table: "Table", m: Array, upper: Array) -> tuple[Array, Array, Array]:
-    """(cell i, fraction f, folded column c), each (n,), of u = m <= 1/2, or u = 1 - m where upper."""
-    last = table.width - 2
-    c = np.clip(table.warp.fold(m, table.width), 0.0, (table.width - 1) / 2)
-    i = np.minimum(c.astype(int), last)
-    f = np.where(upper, 1 - (c - i), c - i)
-    return np.where(upper, last - i, i), f, c
+    return read.angle_at(n, i, f), read.du_at(i, f) / read.slope_at(n, i, f)
 
 
 def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Array]:

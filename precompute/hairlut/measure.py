@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .integrate import Integral, integrate, rows_of_lobe
-from .interpolant import Cells, cells, place
+from .interpolant import Cells, cells
 from .invert import invert
 from .lobes import Array, Lobe
 from .table import Table
@@ -218,7 +218,7 @@ def _weights(read: Cells, exact: Exact, row: Array, n: Array, i: Array, f: Array
 def _quantiles(table: Table, exact: Exact) -> tuple[Array, Array]:
     """Per inclination, the largest quantile error in the whole and in the inner range of u."""
     m, upper = _probabilities(table)
-    i, f, _ = place(table, m, upper)
+    i, f = table.warp.place(m, upper, table.width)
     read = cells(table, exact.theta_r)
     error = abs(read.angle_at(np.arange(len(exact.theta_r))[:, None], i, f) - exact.quantiles(m, upper))
     return error.max(axis=1), error[:, m >= INNER].max(axis=1)

@@ -74,6 +74,17 @@ class Warp:
         f0, k = self.scale(width)
         return np.full_like(c, k, dtype=float) if self.name == "uniform" else 4 * k * (f0 + k * c) ** 3
 
+    def du(self, i: Array, f: Array, width: int) -> Array:
+        """du/dcolumn at the fractions f of the cells i, broadcast against each other."""
+        return self.slope(np.minimum(i + f, (width - 2 - i) + (1 - f)), width)
+
+    def place(self, m: Array, upper: Array, width: int) -> tuple[Array, Array]:
+        """(cell i, fraction f) of u = m <= 1/2, or of u = 1 - m where upper."""
+        last = width - 2
+        c = np.clip(self.fold(m, width), 0.0, (width - 1) / 2)
+        i = np.minimum(c.astype(int), last)
+        return np.where(upper, last - i, i), np.where(upper, 1 - (c - i), c - i)
+
     def knots(self, width: int) -> tuple[Array, Array]:
         """(m, upper), each (width,): the smaller tail of a column, and whether it lies above the texel."""
         column = np.arange(width)

@@ -1,0 +1,214 @@
+/* BSDF plugin "hairlut" for Mitsuba 3, variant scalar_rgb: values from a nested hair BSDF, directions from hairlut.
+ *
+ *   model          string  "fitted" (default), "printed", or a directory that holds the three EXR files of a model
+ *   direct_weight  float   probability of the direct lobe against the multiple lobe, in [0,1] (default 0.5)
+ *   nested_weight  float   probability of the nested BSDF's own sampling, in [0,1] (default 0)
+ *   uniform        boolean draw uniformly from the sphere in place of the tables, for comparison (default false)
+ *   (nested)       bsdf    one BSDF without Dirac components that gives the values
+ *
+ * Conventions. On a curve the shading frame's t, local +y, is the fibre: sin(theta) = w.y. Azimuths run from the surface
+ * normal, local +z, towards local +x. Mitsuba's si.wi is the viewer direction (theta_r, phi_r), its wo the incident one
+ * (theta_i, phi_i). The density is per steradian over the whole sphere; both sides of the surface are sampled.
+ *
+ * Only scalar_rgb is registered: the C library samples one direction per call and does not trace for Dr.Jit. */
+#include <memory>
+#include <string>
+
+#include <mitsuba/core/properties.h>
+#include <mitsuba/core/string.h>
+#include <mitsuba/core/warp.h>
+#include <mitsuba/render/bsdf.h>
+
+#include <hairlut.h>
+
+NAMESPACE_BEGIN(mitsuba)
+
+namespace {
+
+const hairlut_frame local_frame = {{0.f, 1.f, 0.f}, {0.f, 0.f, 1.f}, {1.f, 0.f, 0.f}};
+
+struct Angles {
+    float theta, phi;
+};
+
+template <typename Vector> Angles angles_of(const Vector &w) {
+    const float direction[3] = {w.x(), w.y(), w.z()};
+    Angles a;
+    hairlut_angles(&local_frame, direction, &a.theta, &a.phi);
+    return a;
+}
+
+/// Compiled-in tables need no release, loaded ones do.
+class Tables {
+public:
+    explicit Tables(const std::string &model) : m_model(hairlut_builtin(model.c_str())) {
+        if (!m_model)
+            load(model);
+    }
+    const hairlut_model *get() const { return m_model; }
+
+private:
+    struct Release {
+        void operator()(hairlut_model *model) const { hairlut_free(model); }
+    };
+    void load(const std::string &directory) {
+        hairlut_model *loaded = nullptr;
+        char message[HAIRLUT_MESSAGE_SIZE] = "";
+#ifdef HAIRLUT_WITHOUT_EXR
+        const hairlut_result result = HAIRLUT_ERROR_UNSUPPORTED;
+#else
+        const hairlut_result result = hairlut_load_with(directory.c_str(), nullptr, &loaded, message);
+#endif
+        if (result != HAIRLUT_OK)
+            Throw("hairlut: model \"%s\" is neither \"printed\" nor \"fitted\" nor a directory of tables: %s (%s)",
+                  directory, message, hairlut_result_string(result));
+        m_loaded.reset(loaded);
+        m_model = loaded;
+    }
+
+    std::unique_ptr<hairlut_model, Release> m_loaded;
+    const hairlut_model *m_model;
+};
+
+} // namespace
+
+template <typename Float, typename Spectrum> class HairlutBSDF final : public BSDF<Float, Spectrum> {
+public:
+    MI_IMPORT_BASE(BSDF, m_flags, m_components)
+    MI_IMPORT_TYPES()
+
+    explicit HairlutBSDF(const Properties &props)
+        : Base(props), m_name(props.get<std::string>("model", "fitted")), m_tables(m_name) {
+        m_direct_weight = probability(props, "direct_weight", .5f);
+        m_nested_weight = probability(props, "nested_weight", 0.f);
+        m_uniform = props.get<bool>("uniform", false);
+        for (auto &prop : props.objects())
+            if (Base *bsdf = prop.template try_get<Base>()) {
+                if (m_nested)
+                    Throw("hairlut: expected one nested BSDF, found a second one, \"%s\"", prop.name());
+                m_nested = bsdf;
+            }
+        if (!m_nested)
+            Throw("hairlut: expected a nested BSDF, which gives the values; add one, such as {'type': 'hair'}");
+        if (has_flag(m_nested->flags(), BSDFFlags::DeltaReflection) ||
+            has_flag(m_nested->flags(), BSDFFlags::DeltaTransmission))
+            Throw("hairlut: the nested BSDF has a Dirac component, which no table samples; nest a rough one");
+        for (size_t i = 0; i < m_nested->component_count(); ++i)
+            m_components.push_back(m_nested->flags(i));
+        m_flags = m_nested->flags();
+    }
+
+    std::pair<BSDFSample3f, Spectrum> sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, Float sample1,
+                                             const Point2f &sample2, Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
+        BSDFSample3f bs = dr::zeros<BSDFSample3f>();
+        if (sample1 < m_nested_weight) {
+            Spectrum ignored;
+            std::tie(bs, ignored) = m_nested->sample(ctx, si, sample1 / m_nested_weight, sample2, active);
+            if (!(bs.pdf > 0.f))
+                return { bs, 0.f };
+        } else {
+            bs.wo = propose(si, (sample1 - m_nested_weight) / (1.f - m_nested_weight), sample2);
+            bs.eta = 1.f;
+            bs.sampled_type = +BSDFFlags::Glossy;
+            bs.sampled_component = 0;
+        }
+        auto [value, density] = eval_pdf(ctx, si, bs.wo, active);
+        bs.pdf = density;
+        return { bs, density > 0.f ? value / density : Spectrum(0.f) };
+    }
+
+    Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
+                  Mask active) const override {
+        return m_nested->eval(ctx, si, wo, active);
+    }
+
+    Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
+        return mix(m_nested_weight > 0.f ? m_nested->pdf(ctx, si, wo, active) : Float(0.f), si, wo);
+    }
+
+    std::pair<Spectrum, Float> eval_pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
+                                        Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
+        if (m_nested_weight > 0.f) {
+            auto [value, density] = m_nested->eval_pdf(ctx, si, wo, active);
+            return { value, mix(density, si, wo) };
+        }
+        return { m_nested->eval(ctx, si, wo, active), mix(0.f, si, wo) };
+    }
+
+    Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
+        return m_nested->eval_diffuse_reflectance(si, active);
+    }
+
+    void traverse(TraversalCallback *callback) override {
+        callback->put("nested", m_nested, ParamFlags::NonDifferentiable);
+    }
+
+    std::string to_string() const override {
+        std::ostringstream oss;
+        oss << "HairlutBSDF[" << std::endl
+            << "  model = " << m_name << "," << std::endl
+            << "  direct_weight = " << m_direct_weight << "," << std::endl
+            << "  nested_weight = " << m_nested_weight << "," << std::endl
+            << "  uniform = " << m_uniform << "," << std::endl
+            << "  nested = " << string::indent(m_nested) << std::endl
+            << "]";
+        return oss.str();
+    }
+
+    MI_DECLARE_CLASS(HairlutBSDF)
+
+private:
+    static float probability(const Properties &props, const char *name, float fallback) {
+        const float p = props.get<ScalarFloat>(name, fallback);
+        if (!(p >= 0.f && p <= 1.f))
+            Throw("hairlut: %s is %f: expected a probability, 0 to 1", name, p);
+        return p;
+    }
+
+    /// A direction from the tables, or from the whole sphere.
+    Vector3f propose(const SurfaceInteraction3f &si, Float u_lobe, const Point2f &u) const {
+        if (m_uniform)
+            return warp::square_to_uniform_sphere(u);
+        const Angles r = angles_of(si.wi);
+        const hairlut_sample s =
+            hairlut_sample_mixture(m_tables.get(), m_direct_weight, r.theta, r.phi, u_lobe, u.x(), u.y());
+        float wo[3];
+        hairlut_direction(&local_frame, s.theta_i, s.phi_i, wo);
+        return { wo[0], wo[1], wo[2] };
+    }
+
+    /// Density of what propose() draws, per steradian.
+    Float proposal_pdf(const SurfaceInteraction3f &si, const Vector3f &wo) const {
+        if (m_uniform)
+            return warp::square_to_uniform_sphere_pdf(wo);
+        const Angles r = angles_of(si.wi), i = angles_of(wo);
+        return hairlut_pdf_to_solid_angle(
+            hairlut_pdf_mixture(m_tables.get(), m_direct_weight, r.theta, r.phi, i.theta, i.phi), i.theta);
+    }
+
+    Float mix(Float nested_pdf, const SurfaceInteraction3f &si, const Vector3f &wo) const {
+        if (m_nested_weight >= 1.f)
+            return nested_pdf;
+        return m_nested_weight * nested_pdf + (1.f - m_nested_weight) * proposal_pdf(si, wo);
+    }
+
+    std::string m_name;
+    Tables m_tables;
+    float m_direct_weight, m_nested_weight;
+    bool m_uniform;
+    ref<Base> m_nested;
+
+    MI_TRAVERSE_CB(Base, m_nested)
+};
+
+using Plugin = HairlutBSDF<float, Color<float, 3>>;
+
+extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn register_plugin) {
+    register_plugin(name, Plugin::Variant, Plugin::Type,
+                    [](void *, const Properties &props) -> ref<Object> { return new Plugin(props); });
+}
+
+NAMESPACE_END(mitsuba)

@@ -1,0 +1,1 @@
+"""Mitsuba with the plugin `hairlut`: the hair scene, its renders, and the page that reports them."""

@@ -1,0 +1,27 @@
+"""The engine with the plugin, or a skip that says what is missing."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "runtime" / "mitsuba"))
+
+
+@pytest.fixture(scope="session")
+def tables():
+    """The folder of baked models."""
+    folder = Path(__file__).resolve().parents[2] / "luts"
+    if not (folder / "fitted" / "direct_theta.exr").exists():
+        pytest.skip("luts/ is not baked: make bake")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def mi():
+    from hairscene.plugin import PluginUnavailable, load_engine
+
+    try:
+        return load_engine()
+    except PluginUnavailable as error:
+        pytest.skip(f"the Mitsuba plugin is not tested: {error}")

@@ -1,0 +1,135 @@
+"""The BSDF plugin alone: what it draws is what its density says, at every viewer direction."""
+
+import math
+
+import numpy as np
+import pytest
+from engine.chisquare import cell_masses, direction, interaction, p_value, sample_angles
+
+HAIR = {"type": "hair", "longitudinal_roughness": 0.5, "azimuthal_roughness": 0.5}
+# (theta_r, phi_r) in degrees: facing, tilted both ways, across the fibre's edge, along the fibre, from behind
+VIEWERS = [(0, 0), (0, 89), (30, -45), (-30, 45), (60, 10), (-60, -80), (80, 89), (-85, 20), (40, 170)]
+SETTINGS = {"printed": {"model": "printed"}, "fitted": {"model": "fitted"}, "uniform": {"uniform": True}}
+CASES = [(name, viewer) for name in ("printed", "fitted") for viewer in VIEWERS] + [("uniform", (30, -45))]
+COUNT = 700_000
+ROWS, COLUMNS = 10, 20
+SIGNIFICANCE = 0.01 / len(CASES)
+
+
+def make(mi, nested=HAIR, **parameters):
+    return mi.load_dict({"type": "hairlut", "nested": nested, **parameters})
+
+
+@pytest.fixture(scope="module")
+def drawn(mi):
+    """Samples and cell masses of a setting at a viewer direction, drawn once for the tests below."""
+    cache = {}
+
+    def draw(name, viewer):
+        if (name, viewer) not in cache:
+            bsdf = make(mi, **SETTINGS[name])
+            si = interaction(mi, *map(math.radians, viewer))
+            context = mi.BSDFContext()
+            masses = cell_masses(mi, lambda wo: bsdf.pdf(context, si, wo), ROWS, COLUMNS)
+            cache[name, viewer] = sample_angles(mi, bsdf, si, COUNT, seed=17), masses
+        return cache[name, viewer]
+
+    return draw
+
+
+@pytest.mark.parametrize(("name", "viewer"), CASES, ids=str)
+def test_chi_square_accepts_the_plugin(mi, drawn, name, viewer):
+    angles, masses = drawn(name, viewer)
+    assert masses.sum() == pytest.approx(1.0, abs=1e-3)
+    assert p_value(mi, angles, masses, COUNT) > SIGNIFICANCE
+
+
+@pytest.mark.parametrize(("name", "viewer"), CASES, ids=str)
+def test_chi_square_rejects_a_density_off_by_two_percent(mi, drawn, name, viewer):
+    angles, masses = drawn(name, viewer)
+    assert p_value(mi, angles, 1.02 * masses, COUNT) < SIGNIFICANCE
+
+
+@pytest.mark.parametrize(("name", "viewer"), CASES, ids=str)
+def test_chi_square_rejects_two_percent_moved_around_the_fibre(mi, drawn, name, viewer):
+    """The integral stays 1, so only the shape of the density can give it away."""
+    angles, masses = drawn(name, viewer)
+    half = np.where(np.arange(COLUMNS) < COLUMNS // 2, 1.0, -1.0)
+    half -= (masses * half).sum() / masses.sum()
+    assert p_value(mi, angles, masses * (1.0 + 0.02 * half), COUNT) < SIGNIFICANCE
+
+
+@pytest.mark.parametrize("nested_weight", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("name", SETTINGS)
+def test_weight_is_value_over_density(mi, name, nested_weight):
+    bsdf = make(mi, nested_weight=nested_weight, **SETTINGS[name])
+    nested = mi.load_dict(HAIR)
+    context = mi.BSDFContext()
+    for viewer in VIEWERS:
+        si = interaction(mi, *map(math.radians, viewer))
+        for u, v, w in np.random.default_rng(3).random((200, 3)).tolist():
+            sample, weight = bsdf.sample(context, si, u, mi.Point2f(v, w))
+            if sample.pdf == 0.0:
+                assert np.all(np.array(weight) == 0.0)
+                continue
+            value, density = bsdf.eval_pdf(context, si, sample.wo)
+            assert density == bsdf.pdf(context, si, sample.wo)
+            assert sample.pdf == pytest.approx(density, rel=1e-6)
+            assert np.array(value) == pytest.approx(np.array(nested.eval(context, si, sample.wo)), rel=1e-5)
+            assert np.array(weight) == pytest.approx(np.array(value) / density, rel=1e-5)
+
+
+def test_mixture_density_is_the_weighted_sum(mi):
+    tables, own = make(mi), mi.load_dict(HAIR)
+    mixed = make(mi, nested_weight=0.3)
+    context, si = mi.BSDFContext(), interaction(mi, 0.4, -0.7)
+    for theta, phi in [(-0.5, 2.4), (0.1, 0.0), (1.2, -2.0)]:
+        wo = direction(mi, theta, phi)
+        expected = 0.3 * own.pdf(context, si, wo) + 0.7 * tables.pdf(context, si, wo)
+        assert mixed.pdf(context, si, wo) == pytest.approx(expected, rel=1e-5)
+
+
+def test_both_sides_and_all_azimuths_are_drawn(mi):
+    angles = sample_angles(mi, make(mi), interaction(mi, 0.2, 0.3), 20_000, seed=5)
+    octants = np.unique((angles[:, 0] > 0) * 4 + np.floor((angles[:, 1] + np.pi) / (np.pi / 2)).astype(int))
+    assert octants.size == 8
+
+
+def test_fitted_proposes_the_far_side_mirrored_along_the_fibre(mi):
+    """theta_i near -theta_r and phi_i near phi_r + pi: swapped axes, signs, or wi and wo would move it."""
+    theta_r, phi_r = math.radians(35.0), math.radians(20.0)
+    angles = sample_angles(mi, make(mi, direct_weight=1.0), interaction(mi, theta_r, phi_r), 20_000, seed=6)
+    around = np.angle(np.mean(np.exp(1j * (angles[:, 1] - phi_r))))
+    assert np.median(angles[:, 0]) == pytest.approx(-theta_r + math.radians(3 * theta_r - 2.0), abs=0.01)
+    assert abs(around) == pytest.approx(math.pi, abs=0.02)
+
+
+def test_a_directory_of_tables_is_the_compiled_in_model(mi, tables):
+    context, si = mi.BSDFContext(), interaction(mi, 0.4, -0.7)
+    loaded, builtin = make(mi, model=str(tables / "fitted")), make(mi, model="fitted")
+    for u, v, w in np.random.default_rng(8).random((200, 3)).tolist():
+        a, _ = loaded.sample(context, si, u, mi.Point2f(v, w))
+        b, _ = builtin.sample(context, si, u, mi.Point2f(v, w))
+        assert np.array(a.wo) == pytest.approx(np.array(b.wo), abs=2e-6)
+        assert a.pdf == pytest.approx(b.pdf, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"model": "no_such_model"}, "printed.*fitted.*directory"),
+        ({"direct_weight": 1.5}, "direct_weight is 1.5.*expected a probability"),
+        ({"nested_weight": -0.1}, "nested_weight is -0.1.*expected a probability"),
+        ({"nested": {"type": "dielectric"}}, "Dirac"),
+        ({"second": {"type": "hair"}}, "one nested BSDF"),
+    ],
+    ids=str,
+)
+def test_wrong_parameters_are_named(mi, parameters, message):
+    with pytest.raises(RuntimeError, match=message):
+        make(mi, **parameters)
+
+
+def test_a_nested_bsdf_is_required(mi):
+    with pytest.raises(RuntimeError, match="expected a nested BSDF"):
+        mi.load_dict({"type": "hairlut"})

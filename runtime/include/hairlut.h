@@ -112,6 +112,11 @@ HAIRLUT_API hairlut_result hairlut_model_create(const hairlut_model_desc *desc, 
 /* Releases a model made by hairlut_model_create or hairlut_load; NULL is allowed. No thread may be using it. */
 HAIRLUT_API void hairlut_free(hairlut_model *model);
 
+typedef enum hairlut_part { HAIRLUT_DIRECT_THETA = 0, HAIRLUT_DIRECT_PHI = 1, HAIRLUT_MULTIPLE_THETA = 2 } hairlut_part;
+
+/* Columns and rows of one of a model's tables. */
+HAIRLUT_API void hairlut_table_size(const hairlut_model *model, hairlut_part part, int *width, int *height);
+
 /* ---- one direction -------------------------------------------------------------------------------------------- */
 
 typedef struct hairlut_sample {

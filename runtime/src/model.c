@@ -208,3 +208,10 @@ void hairlut_free(hairlut_model *model)
         a.release(a.user, model);
     }
 }
+
+void hairlut_table_size(const hairlut_model *model, hairlut_part part, int *width, int *height)
+{
+    const hairlut_axis *axes[3] = {&model->direct_theta, &model->direct_phi, &model->multiple_theta};
+    *width = axes[part]->columns;
+    *height = axes[part]->height;
+}

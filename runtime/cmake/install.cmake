@@ -1,5 +1,6 @@
 # Install: libraries, headers, a CMake package, pkg-config files.
 set(package_directory ${CMAKE_INSTALL_LIBDIR}/cmake/hairlut)
+file(RELATIVE_PATH from_pkgconfig ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX}) # relocatable
 
 # hairlut_install(NAME MODULE): both forms, as the CMake targets of NAME-targets.cmake and as the pkg-config MODULE
 function(hairlut_install name module)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -22,12 +23,12 @@ def is_current(folder: Path, source: Path, options: dict) -> bool:
     """Whether folder holds the textures of this model file, made with these options by this version."""
     try:
         manifest = json.loads((folder / NAME).read_text())
-        made_from = {Path(name): digest for name, digest in manifest["inputs"].items()}
+        made_from = {folder / name: digest for name, digest in manifest["inputs"].items()}
         made = {folder / name: digest for name, digest in manifest["textures"].items()}
         return (
             manifest["generator"] == __version__
             and manifest["options"] == options
-            and source.resolve() in made_from
+            and _relative(source, folder) in manifest["inputs"]
             and all(_digest(path) == digest for path, digest in {**made_from, **made}.items())
         )
     except (OSError, ValueError, KeyError, AttributeError, TypeError):
@@ -39,10 +40,14 @@ def record(folder: Path, inputs: Iterable[Path], textures: Iterable[Path], optio
     manifest = {
         "generator": __version__,
         "options": options,
-        "inputs": {str(path.resolve()): _digest(path) for path in inputs},
+        "inputs": {_relative(path, folder): _digest(path) for path in inputs},
         "textures": {path.name: _digest(path) for path in textures},
     }
     write_whole(folder / NAME, f"{json.dumps(manifest, indent=1)}\n".encode())
+
+
+def _relative(path: Path, folder: Path) -> str:
+    return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
 
 
 def _digest(path: Path) -> str:

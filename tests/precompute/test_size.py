@@ -10,6 +10,7 @@ from hairlut import size
 from hairlut.cli import main
 from hairlut.errors import HairlutError
 from hairlut.exr import read
+from hairlut.half import as_half
 from hairlut.lobes import FITTED, MODELS
 from hairlut.measure import flat_cells, measure, narrowest_cell
 from hairlut.size import CELL, ToleranceError, ladder, smallest_table, table_of_size
@@ -171,3 +172,22 @@ def test_bake_with_a_warp_measures_that_warp(tmp_path, capsys):
     table, errors = read(tmp_path / "fitted" / "direct_theta.exr")
     assert str(table.warp) == "uniform"
     assert errors["relative_variance"] > 0.05
+
+
+def test_half_floats_are_refused_with_figures(tmp_path, capsys):
+    assert main(["bake", "--model", "fitted", "--size", "32x32", "--half", "--out", str(tmp_path)]) == 2
+    assert "half floats are refused: 24 cells would be flat" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("side", [32, 64])
+def test_no_table_survives_as_half_floats(lobe, side):
+    """If this fails, half floats should be offered."""
+    table = table_of_size(lobe, side, side).table
+    rounded = as_half(table)
+    with np.errstate(all="ignore"):
+        after = measure(rounded, lobe, quantiles=False)
+    assert (
+        flat_cells(rounded.texels) > 0
+        or after.relative_variance > 1.1 * measure(table, lobe).relative_variance
+    )

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import batch_bake, exr, manifest, modelfile, size
+from .. import batch_bake, exr, half, manifest, modelfile, size
 from ..errors import HairlutError
 from ..interpolant import Cell
 from ..lobecheck import find_jump
@@ -77,6 +77,11 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         default=str(size.CELL),
         metavar="CELL",
         help="curve inside a cell: 'quadratic limit=NUMBER' or 'linear' (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--half",
+        action="store_true",
+        help="always refused, with what half floats would do to the table",
     )
     return parser
 
@@ -172,6 +177,8 @@ def bake_all(lobes: list[Lobe], args: argparse.Namespace) -> list[size.Choice] |
     for lobe in shown:
         try:
             choices.append(bake_one(lobe, args))
+            if args.half:
+                raise half.refusal(choices[-1].table, lobe)
         except size.ToleranceError as error:
             print(f"hairlut: {error}{_jump(lobe)}", file=sys.stderr)
             return None

@@ -29,6 +29,6 @@ def refusal(table: Table, lobe: Lobe) -> HairlutError:
     before, after = (each.relative_variance for each in errors)
     return HairlutError(
         f"{lobe.model}/{lobe.name} at {table.width}x{table.height}: half floats are refused: "
-        f"{flat_cells(rounded.texels)} cells would be flat, the ends would miss the domain's by {off:.1e} rad, "
+        f"{flat_cells(rounded.texels)} cells would be flat, the ends would miss the domain by {off:.1e} rad, "
         f"and V would be {after:.1e} instead of {before:.1e}: leave out --half"
     )

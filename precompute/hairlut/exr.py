@@ -96,6 +96,8 @@ def read(path: Path) -> tuple[Table, dict[str, float]]:
 
 
 def _open(path: Path) -> tuple[dict, dict]:
+    if path.is_dir():
+        raise HairlutError(f"{path}: is a directory: name a file in it")
     if not path.is_file():
         raise HairlutError(f"{path}: no such file: {REBAKE}")
     try:

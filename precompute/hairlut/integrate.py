@@ -213,12 +213,8 @@ def _unresolved(rows: Rows, panels: _Panels, scale: Array) -> Array:
     nearer = nearer[panels.row, _place(panels.row)]
     split = error > np.maximum(TOLERANCE * nearer, panels.noise * panels.fine * factor)
     split |= panels.edge > np.maximum(panels.top + 1, scale[panels.row] - NEGLIGIBLE)
-    # A panel beside a much smaller one may hide the other half of a peak between its points.
-    h = panels.b - panels.a
-    joined = panels.row[1:] == panels.row[:-1]
-    split[:-1] |= joined & (h[:-1] > 2.5 * h[1:])
-    split[1:] |= joined & (h[1:] > 2.5 * h[:-1])
     # A jump, or an end where the density is unbounded, is left alone when no angle could tell the difference.
+    h = panels.b - panels.a
     narrow = h <= EPS * (rows.high - rows.low)[panels.row]
     harmless = narrow & (error <= TOLERANCE * mass.sum(axis=1)[panels.row])
     return split & ~harmless & (h > 4 * EPS * np.maximum(abs(panels.a), abs(panels.b)))

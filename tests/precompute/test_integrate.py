@@ -3,7 +3,7 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hairlut import analytic
@@ -62,6 +62,8 @@ def test_mean_forty_sigma_outside(side, sigma):
 
 
 @settings(deadline=None, max_examples=60)
+@example(mean=-10.5, log_sigma=-7.0, m=2.0**-24, upper=True)  # 10^4 sigma outside
+@example(mean=0.0, log_sigma=np.log(1e-4), m=0.3, upper=False)  # a peak between two first panels
 @given(
     mean=st.floats(-12, 12),
     log_sigma=st.floats(np.log(1e-4), np.log(30)),

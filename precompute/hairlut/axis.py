@@ -22,5 +22,6 @@ def axis_numbers(table: Table) -> list[float]:
     e = float(np.float32(table.warp.e))
     shape = [table.width, table.height, int(table.warp.name == "quartic")]
     rows = [low, (table.height - 1) / (high - low), *table.domain]
-    warp = [e, *Warp(table.warp.name, e).scale(table.width), table.cell.limit]
+    f0 = np.sqrt(np.sqrt(np.float32(table.warp.e if shape[2] else 0)))  # as a draw rounds it
+    warp = [e, f0, Warp(table.warp.name, e).scale(table.width)[1], table.cell.limit]
     return np.float32([*shape, *rows, *warp]).astype(float).tolist()

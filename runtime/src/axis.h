@@ -11,8 +11,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "count.h"
 #include "internal.h"
+#include "quad.h"
 
 typedef struct hairlut_rows {
     const float *a; /* padded row below theta_r, and the one above it at a + stride */
@@ -56,29 +56,30 @@ static inline float hairlut_clamp(float x, float low, float high)
 static inline hairlut_rows hairlut_axis_rows(const hairlut_axis *axis, float theta_r)
 {
     const float r = hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, 0.0f, axis->row_last);
-    int j = (int)r;
-    j -= j > axis->height - 2;
+    const int row = (int)r, last = axis->height - 2;
+    const int j = row < last ? row : last;
     const hairlut_rows rows = {axis->rows + (size_t)j * (size_t)axis->stride, axis->stride, r - (float)j};
     return rows;
 }
 
-/* hairlut_blend for widths: positive for positive a and b at every t, which hairlut_blend is not where b is far below a. */
-static inline float hairlut_blend_width(float a, float b, float t)
+static inline float hairlut_blend(float a, float b, float t)
 {
-    return (1.0f - t) * a + t * b;
+    return a + t * (b - a);
 }
 
-/* Differences are taken in each row before they are blended: neighbouring texels subtract without rounding. */
+/* Widths are taken in each row before they are blended, because neighbouring texels subtract without rounding; and
+ * blended as (1-t) a + t b, which stays positive at every t, as a + t (b-a) does not where b is far below a. */
 static inline hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, const hairlut_rows *rows, int i)
 {
-    const float *a = rows->a + i;
-    const float *b = a + rows->stride;
-    const float t = rows->t;
-    const float d = hairlut_blend_width(a[2] - a[1], b[2] - b[1], t);
-    /* before - after, the widths of the neighbouring cells */
-    const float bend = hairlut_blend_width((a[1] - a[0]) - (a[3] - a[2]), (b[1] - b[0]) - (b[3] - b[2]), t);
-    const float bound = axis->limit * d;
-    const hairlut_cell cell = {hairlut_blend(a[1], b[1], t), d, hairlut_clamp(0.25f * bend, -bound, bound)};
+    const float *a = rows->a + i, *b = a + rows->stride;
+    const hairlut_quad widths_a = hairlut_quad_sub(hairlut_quad_load(a + 1), hairlut_quad_load(a));
+    const hairlut_quad widths_b = hairlut_quad_sub(hairlut_quad_load(b + 1), hairlut_quad_load(b));
+    const hairlut_quad t = hairlut_quad_all(rows->t), s = hairlut_quad_all(1.0f - rows->t);
+    float width[3]; /* of the cell before, of this one, and of the one after */
+    hairlut_quad_first3(hairlut_quad_add(hairlut_quad_mul(s, widths_a), hairlut_quad_mul(t, widths_b)), width);
+    const float d = width[1], bound = axis->limit * d;
+    const hairlut_cell cell = {hairlut_blend(a[1], b[1], rows->t), d,
+                               hairlut_clamp(0.25f * (width[0] - width[2]), -bound, bound)};
     return cell;
 }
 
@@ -95,16 +96,16 @@ static inline float hairlut_cell_slope(const hairlut_cell *cell, float f)
 /* du/dcolumn where the warp's curve has the value y. */
 static inline float hairlut_axis_du(const hairlut_axis *axis, float y)
 {
-    return axis->warp == HAIRLUT_WARP_QUARTIC ? 4.0f * axis->k * (y * (y * y)) : axis->k;
+    return axis->warp == HAIRLUT_WARP_QUARTIC ? axis->du * (y * (y * y)) : axis->du;
 }
 
 /* u to column. The fold at u = 1/2 keeps the relative precision of both tails, and mirrors without a branch: u is as
- * good as random, and so would be the branch. */
+ * good as random, and so would be the branch. c >= 0, because f0 is this curve's value at m = 0 to the last bit. */
 static inline hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
 {
     const float m = hairlut_max(hairlut_min(u, 1.0f - u), 0.0f);
     const float y = axis->warp == HAIRLUT_WARP_QUARTIC ? sqrtf(sqrtf(m + axis->e)) : m;
-    const float c = hairlut_clamp((y - axis->f0) * axis->inverse_k, 0.0f, axis->middle);
+    const float c = (y - axis->f0) * axis->inverse_k;
     const int upper = u > 0.5f;
     const int i = (int)c;
     const float f = c - (float)i;
@@ -138,6 +139,19 @@ static inline float hairlut_axis_u(const hairlut_axis *axis, int i, float f)
     }
     m = hairlut_clamp(m, 0.0f, 0.5f);
     return hairlut_from_low(i, f) <= hairlut_from_high(axis, i, f) ? m : 1.0f - m;
+}
+
+/* How many of the n blended texels from a on are at most x: a count has no branch that depends on x. Up to three floats
+ * beyond the n are read. */
+static inline int hairlut_count(const float *a, int stride, float t, float x, int n)
+{
+    hairlut_tally tally = hairlut_tally_zero();
+    for (int k = 0; k < n; k += 4) {
+        const hairlut_quad low = hairlut_quad_load(a + k), high = hairlut_quad_load(a + stride + k);
+        const hairlut_quad change = hairlut_quad_mul(hairlut_quad_all(t), hairlut_quad_sub(high, low));
+        tally = hairlut_tally_at_most(tally, hairlut_quad_add(low, change), x, n - k);
+    }
+    return hairlut_tally_sum(tally);
 }
 
 /* Halves the range of `cells` cells from `first` on in which x lies down to HAIRLUT_PIVOTS cells; its first cell. */
@@ -178,7 +192,8 @@ static inline hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float t
     const hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
     const hairlut_knot knot = hairlut_axis_knot(axis, u);
     const hairlut_cell cell = hairlut_axis_cell(axis, &rows, knot.i);
-    const hairlut_draw draw = {hairlut_clamp(hairlut_cell_angle(&cell, knot.f), axis->low, axis->high),
+    /* not below the domain: the first texel is its end, and widths are positive */
+    const hairlut_draw draw = {hairlut_min(hairlut_cell_angle(&cell, knot.f), axis->high),
                                knot.du / hairlut_cell_slope(&cell, knot.f)};
     return draw;
 }

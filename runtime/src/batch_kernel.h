@@ -5,7 +5,7 @@
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
- *   count(a, stride, t, x, n)  hairlut_count of one search, not of lanes; 0 <= n <= 16 and 16 floats are read
+ *   count(a, stride, t, x, n)  if HAIRLUT_SEARCH is defined: hairlut_count with wider vectors; n <= 16, 16 floats are read
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, because a single one would wait for the square roots,
@@ -15,6 +15,13 @@
 #define HAIRLUT_BATCH_KERNEL_H
 
 #include "lobes.h"
+
+#ifndef HAIRLUT_SEARCH
+static inline int count(const float *a, int stride, float t, float x, int n)
+{
+    return hairlut_count(a, stride, t, x, n);
+}
+#endif
 
 enum { BLOCK = 128 }; /* samples a pass */
 
@@ -61,7 +68,7 @@ static inline whole find_rows(const hairlut_axis *axis, real theta_r, real *t)
 /* hairlut_axis_du */
 static inline real du_dcolumn(const hairlut_axis *axis, real y)
 {
-    return axis->warp == HAIRLUT_WARP_QUARTIC ? mul(all(4.0f * axis->k), mul(y, mul(y, y))) : all(axis->k);
+    return axis->warp == HAIRLUT_WARP_QUARTIC ? mul(all(axis->du), mul(y, mul(y, y))) : all(axis->du);
 }
 
 /* hairlut_axis_knot, whose fold is a subtraction here */
@@ -69,7 +76,7 @@ static inline whole find_knot(const hairlut_axis *axis, real u, real *f, real *d
 {
     const real m = larger(smaller(u, sub(all(1.0f), u)), all(0.0f));
     const real y = axis->warp == HAIRLUT_WARP_QUARTIC ? root(root(add(m, all(axis->e)))) : m;
-    const real c = clamp(mul(sub(y, all(axis->f0)), all(axis->inverse_k)), all(0.0f), all(axis->middle));
+    const real c = mul(sub(y, all(axis->f0)), all(axis->inverse_k));
     const mask upper = greater(u, all(0.5f));
     const whole i = truncated(c);
     const real part = sub(c, converted(i));
@@ -97,14 +104,13 @@ static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
     gather4(axis->rows, at, a);
     gather4(axis->rows + axis->stride, at, b);
     const real s = sub(all(1.0f), t);
-    const real bend_a = sub(sub(a[1], a[0]), sub(a[3], a[2]));
-    const real bend_b = sub(sub(b[1], b[0]), sub(b[3], b[2]));
-    const real bend = mul(all(0.25f), blend_width(bend_a, bend_b, s, t));
+    const real before = blend_width(sub(a[1], a[0]), sub(b[1], b[0]), s, t);
+    const real after = blend_width(sub(a[3], a[2]), sub(b[3], b[2]), s, t);
     cells cell;
     cell.x0 = add(a[1], mul(t, sub(b[1], a[1])));
     cell.d = blend_width(sub(a[2], a[1]), sub(b[2], b[1]), s, t);
     const real bound = mul(all(axis->limit), cell.d);
-    cell.c = clamp(bend, sub(all(-0.0f), bound), bound);
+    cell.c = clamp(mul(all(0.25f), sub(before, after)), sub(all(-0.0f), bound), bound);
     return cell;
 }
 
@@ -116,7 +122,7 @@ static inline real draw(const hairlut_axis *axis, const places *p, size_t s, rea
     const real x = add(cell.x0, mul(f, add(cell.d, mul(cell.c, sub(all(1.0f), f)))));
     const real slope = add(cell.d, mul(cell.c, sub(all(1.0f), mul(all(2.0f), f))));
     *pdf = over(load(p->du + s), slope);
-    return clamp(x, all(axis->low), all(axis->high));
+    return smaller(x, all(axis->high));
 }
 
 /* hairlut_axis_find up to the pivots: the first cell after the last pivot that is at most x */

@@ -37,11 +37,11 @@ typedef struct hairlut_axis {
     float row_last;   /* height - 1 */
     float low;        /* the domain */
     float high;
-    float e; /* quartic warp: y = (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column */
-    float f0;
-    float k; /* uniform warp: m = k c */
+    float e; /* quartic warp: y = (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column, dm/dc = du y^3 */
+    float f0; /* sqrtf(sqrtf(e)), rounded as when a sample is drawn */
+    float k; /* uniform warp: m = k c, dm/dc = du */
     float inverse_k;
-    float middle; /* the largest folded column: (columns - 1) / 2 */
+    float du;
     float limit;  /* of a cell's curvature, relative to its width */
 } hairlut_axis;
 
@@ -51,7 +51,8 @@ typedef struct hairlut_axis {
     {                                                                                                                 \
         (stored) + HAIRLUT_PIVOTS, columns_, height_, HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_), warp_,        \
             row_origin_, row_scale_,                                                                                  \
-            (float)((height_) - 1), low_, high_, e_, f0_, k_, 1.0f / (k_), 0.5f * (float)((columns_) - 1), limit_     \
+            (float)((height_) - 1), low_, high_, e_, f0_, k_, 1.0f / (k_),                                            \
+            (warp_) == HAIRLUT_WARP_QUARTIC ? 4.0f * (k_) : (k_), limit_                                              \
     }
 
 struct hairlut_model {

@@ -131,7 +131,7 @@ static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *rows
     const float row_scale = (float)((t->height - 1) / ((double)t->theta_r_max - (double)t->theta_r_min));
     const hairlut_axis filled =
         HAIRLUT_AXIS(rows, t->width, t->height, t->theta_r_min, row_scale, t->domain_min, t->domain_max, (int)t->warp,
-                     (float)scale.e, (float)scale.f0, (float)scale.k, t->cell_limit);
+                     (float)scale.e, sqrtf(sqrtf((float)scale.e)), (float)scale.k, t->cell_limit);
     *axis = filled;
     for (int j = 0; j < t->height; ++j)
         store_row(rows + (size_t)j * (size_t)axis->stride, t->texels + (size_t)j * (size_t)t->width, t->width);

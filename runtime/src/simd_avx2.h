@@ -53,6 +53,7 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(b, d));
 }
 
+#define HAIRLUT_SEARCH
 static inline unsigned below(const float *a, int stride, float t, float x)
 {
     const real low = load(a), high = load(a + stride);

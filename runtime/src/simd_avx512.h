@@ -54,6 +54,7 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(b, d));
 }
 
+#define HAIRLUT_SEARCH
 static inline int count(const float *a, int stride, float t, float x, int n)
 {
     const real low = load(a), high = load(a + stride);

@@ -4,8 +4,6 @@
 
 #include <arm_neon.h>
 
-#include "count.h"
-
 typedef float32x4_t real;
 typedef int32x4_t whole;
 typedef uint32x4_t mask;
@@ -47,11 +45,6 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[1] = vcombine_f32(vget_low_f32(a.val[1]), vget_low_f32(b.val[1]));
     x[2] = vcombine_f32(vget_high_f32(a.val[0]), vget_high_f32(b.val[0]));
     x[3] = vcombine_f32(vget_high_f32(a.val[1]), vget_high_f32(b.val[1]));
-}
-
-static inline int count(const float *a, int stride, float t, float x, int n)
-{
-    return hairlut_count(a, stride, t, x, n);
 }
 
 #endif

@@ -1,0 +1,135 @@
+/* Four neighbouring floats at once, where every processor of an architecture has the instructions: x86-64, AArch64. The
+ * form in plain C gives the same numbers. */
+#ifndef HAIRLUT_QUAD_H
+#define HAIRLUT_QUAD_H
+
+#if defined(HAIRLUT_PLAIN_QUAD)
+#elif defined(__SSE2__) || defined(_M_X64)
+#define HAIRLUT_QUAD_SSE2
+#include <emmintrin.h>
+#elif defined(__aarch64__) || defined(_M_ARM64)
+#define HAIRLUT_QUAD_NEON
+#include <arm_neon.h>
+#endif
+
+#if defined(HAIRLUT_QUAD_SSE2)
+typedef __m128 hairlut_quad;
+
+static inline hairlut_quad hairlut_quad_load(const float *p) { return _mm_loadu_ps(p); }
+static inline hairlut_quad hairlut_quad_all(float a) { return _mm_set1_ps(a); }
+static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { return _mm_add_ps(a, b); }
+static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return _mm_sub_ps(a, b); }
+static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return _mm_mul_ps(a, b); }
+
+static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
+{
+    lane[0] = _mm_cvtss_f32(a);
+    lane[1] = _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1));
+    lane[2] = _mm_cvtss_f32(_mm_movehl_ps(a, a));
+}
+
+typedef __m128i hairlut_tally; /* four counters */
+
+static inline hairlut_tally hairlut_tally_zero(void) { return _mm_setzero_si128(); }
+
+/* Counts those of the first n lanes that are at most x. */
+static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x, int n)
+{
+    const __m128i inside = _mm_cmplt_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(n));
+    return _mm_sub_epi32(tally, _mm_and_si128(inside, _mm_castps_si128(_mm_cmple_ps(a, _mm_set1_ps(x)))));
+}
+
+static inline int hairlut_tally_sum(hairlut_tally a)
+{
+    a = _mm_add_epi32(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
+    return _mm_cvtsi128_si32(_mm_add_epi32(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(2, 3, 0, 1))));
+}
+
+#elif defined(HAIRLUT_QUAD_NEON)
+typedef float32x4_t hairlut_quad;
+
+static inline hairlut_quad hairlut_quad_load(const float *p) { return vld1q_f32(p); }
+static inline hairlut_quad hairlut_quad_all(float a) { return vdupq_n_f32(a); }
+static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { return vaddq_f32(a, b); }
+static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return vsubq_f32(a, b); }
+static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return vmulq_f32(a, b); }
+
+static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
+{
+    lane[0] = vgetq_lane_f32(a, 0);
+    lane[1] = vgetq_lane_f32(a, 1);
+    lane[2] = vgetq_lane_f32(a, 2);
+}
+
+typedef uint32x4_t hairlut_tally;
+
+static inline hairlut_tally hairlut_tally_zero(void) { return vdupq_n_u32(0); }
+
+static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x, int n)
+{
+    static const int index[4] = {0, 1, 2, 3};
+    const uint32x4_t inside = vcltq_s32(vld1q_s32(index), vdupq_n_s32(n));
+    return vsubq_u32(tally, vandq_u32(inside, vcleq_f32(a, vdupq_n_f32(x))));
+}
+
+static inline int hairlut_tally_sum(hairlut_tally a) { return (int)vaddvq_u32(a); }
+
+#else
+typedef struct hairlut_quad {
+    float lane[4];
+} hairlut_quad;
+
+static inline hairlut_quad hairlut_quad_load(const float *p)
+{
+    const hairlut_quad a = {{p[0], p[1], p[2], p[3]}};
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_all(float x)
+{
+    const hairlut_quad a = {{x, x, x, x}};
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] += b.lane[l];
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] -= b.lane[l];
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] *= b.lane[l];
+    return a;
+}
+
+static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
+{
+    for (int l = 0; l < 3; ++l)
+        lane[l] = a.lane[l];
+}
+
+typedef int hairlut_tally;
+
+static inline hairlut_tally hairlut_tally_zero(void) { return 0; }
+
+static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x, int n)
+{
+    for (int l = 0; l < 4; ++l)
+        tally += (a.lane[l] <= x) & (l < n);
+    return tally;
+}
+
+static inline int hairlut_tally_sum(hairlut_tally a) { return a; }
+#endif
+
+#endif

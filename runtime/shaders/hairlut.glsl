@@ -279,13 +279,15 @@ int hairlut_axis_find(hairlut_axis axis, hairlut_rows rows, float x)
     return i;
 }
 
-/* (fraction of a cell at which x lies, dx/df there). The root of the quadratic is that slope. */
+/* (fraction of a cell at which x lies, dx/df there). The root of the quadratic is that slope, written as the slope at the
+ * cell's flatter end and the distance from there, which cancels nothing. */
 vec2 hairlut_cell_solve(hairlut_cell cell, float x)
 {
     float d = clamp(x - cell.x0, 0.0, cell.d);
-    float s = cell.d + cell.c;
-    float slope = sqrt(max(s * s - 4.0 * cell.c * d, 0.0));
-    return vec2(min(2.0 * d / (s + slope), 1.0), slope);
+    float flat_slope = cell.d - abs(cell.c);
+    float away = cell.c > 0.0 ? cell.d - d : d;
+    float slope = sqrt(flat_slope * flat_slope + 4.0 * abs(cell.c) * away);
+    return vec2(min(2.0 * d / (cell.d + cell.c + slope), 1.0), slope);
 }
 
 hairlut_draw hairlut_axis_sample(hairlut_axis axis, float theta_r, float u)
@@ -384,8 +386,9 @@ float hairlut_pdf_multiple(hairlut_model model, float theta_r, float phi_r, floa
  * the nearer end's u; NaN gives 0. */
 vec2 hairlut_invert_direct(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
 {
+    float phi = hairlut_is_nan(phi_i) ? 0.0 : hairlut_relative_azimuth(model, phi_r, phi_i);
     return vec2(hairlut_axis_invert(model.direct_theta, theta_r, theta_i),
-                hairlut_axis_invert(model.direct_phi, theta_r, hairlut_relative_azimuth(model, phi_r, phi_i)));
+                hairlut_axis_invert(model.direct_phi, theta_r, phi));
 }
 
 vec2 hairlut_invert_multiple(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)

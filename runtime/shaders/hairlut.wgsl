@@ -260,12 +260,14 @@ fn hairlut_axis_find(axis: hairlut_axis, rows: hairlut_rows, x: f32) -> i32 {
     return i;
 }
 
-/* (fraction of a cell at which x lies, dx/df there). The root of the quadratic is that slope. */
+/* (fraction of a cell at which x lies, dx/df there). The root of the quadratic is that slope, written as the slope at the
+ * cell's flatter end and the distance from there, which cancels nothing. */
 fn hairlut_cell_solve(cell: hairlut_cell, x: f32) -> vec2f {
     let d = clamp(x - cell.x0, 0.0, cell.d);
-    let s = cell.d + cell.c;
-    let slope = sqrt(max(s * s - 4.0 * cell.c * d, 0.0));
-    return vec2f(min(2.0 * d / (s + slope), 1.0), slope);
+    let flat_slope = cell.d - abs(cell.c);
+    let away = select(d, cell.d - d, cell.c > 0.0);
+    let slope = sqrt(flat_slope * flat_slope + 4.0 * abs(cell.c) * away);
+    return vec2f(min(2.0 * d / (cell.d + cell.c + slope), 1.0), slope);
 }
 
 fn hairlut_axis_sample(axis: hairlut_axis, theta_r: f32, u: f32) -> hairlut_draw {
@@ -355,8 +357,9 @@ fn hairlut_pdf_multiple(model: hairlut_model, theta_r: f32, phi_r: f32, theta_i:
 /* The numbers (u_theta, u_phi) from which the sampling function draws (theta_i, phi_i). Directions outside the domain give
  * the nearer end's u; NaN gives 0. */
 fn hairlut_invert_direct(model: hairlut_model, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> vec2f {
+    let phi = select(hairlut_relative_azimuth(model, phi_r, phi_i), 0.0, hairlut_is_nan(phi_i));
     return vec2f(hairlut_axis_invert(model.direct_theta, theta_r, theta_i),
-                 hairlut_axis_invert(model.direct_phi, theta_r, hairlut_relative_azimuth(model, phi_r, phi_i)));
+                 hairlut_axis_invert(model.direct_phi, theta_r, phi));
 }
 
 fn hairlut_invert_multiple(model: hairlut_model, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> vec2f {

@@ -1,0 +1,43 @@
+"""hairlut view: the lobe explorer."""
+
+import argparse
+from pathlib import Path
+
+EXAMPLES = """examples:
+  hairlut view --open                      write luts/report/explorer.html and show it in a browser
+  hairlut view build/mine --out mine.html  a model of your own"""
+
+
+def add_parser(subparsers) -> argparse.ArgumentParser:
+    parser = subparsers.add_parser(
+        "view",
+        help="write the lobe explorer, one HTML page",
+        description="Writes one self-contained HTML page that draws the lobes of baked models with WebGL2 "
+        "and the shipped shader: samples, densities, textures and errors, for every theta_r.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "directory", type=Path, nargs="*", help="directories of models (default: luts/fitted luts/printed)"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("luts/report/explorer.html"),
+        metavar="FILE",
+        help="page to write (default: %(default)s)",
+    )
+    parser.add_argument("--open", action="store_true", help="show the page in the default browser")
+    return parser
+
+
+def run(args: argparse.Namespace) -> int:
+    from ..view import write_explorer
+
+    out = write_explorer(args.directory or [Path("luts/fitted"), Path("luts/printed")], args.out)
+    print(f"{out}  {out.stat().st_size / 1024:.0f} KB")
+    if args.open:
+        import webbrowser
+
+        webbrowser.open(out.resolve().as_uri())
+    return 0

@@ -1,0 +1,277 @@
+"""The lobe explorer in a browser: every control moved, the numbers on the page compared with C's."""
+
+import json
+import re
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+from scipy import stats
+from shaders.agreement import INPUTS, ROOT, Reference
+from shaders.backends import SHADERS, chromium
+
+from hairlut import size, view
+from hairlut.cli import main
+from hairlut.export import read_model
+from hairlut.lobes import MODELS
+from hairlut.measure import measure
+
+LUTS = ROOT / "luts"
+SIZES = (16, 32)
+READ = """
+const at = id => document.getElementById(id);
+const text = id => at(id).textContent.replaceAll("\u2212", "-");
+return {
+    trouble: at("trouble").textContent,
+    one: ["theta_i", "phi_i", "pdf_angle", "pdf_solid_angle"].map(id => Number(text(id))),
+    more: window.explorer.one(),
+    sliders: ["theta_r", "phi_r", "weight", "u_theta", "u_phi", "u_lobe"].map(
+        id => parseFloat(text(id + "_text"))),
+    variance: [0, 1, 2].map(k => Number(text("variance_" + k))),
+    rows: [0, 1, 2].map(k => parseFloat(text("row_" + k).slice(4))),
+    fits: ["theta_fit", "phi_fit"].map(id => ({value: +at(id).dataset.value, degrees: +at(id).dataset.degrees,
+        p: +at(id).dataset.p, text: text(id)})),
+    drawn: window.explorer.counted.n,
+};
+"""
+SET = """
+for (const [id, value] of Object.entries(arguments[0])) {
+    const input = document.getElementById(id);
+    input.value = value;
+    input.dispatchEvent(new Event("input"));
+}
+"""
+
+
+class Page:
+    """The explorer in a browser."""
+
+    def __init__(self, driver):
+        self.driver = driver
+
+    def read(self) -> dict:
+        return self.driver.execute_script(READ)
+
+    def settle(self, act) -> dict:
+        """The page's numbers after act and the redrawing that follows it."""
+        act()
+        self.wait("return window.explorer.idle()")
+        return self.read()
+
+    def wait(self, script: str) -> None:
+        end = time.monotonic() + 60
+        while not self.driver.execute_script(script):
+            assert time.monotonic() < end, f"waited 60 s for: {script}"
+            time.sleep(0.05)
+
+    def slide(self, **values: float) -> dict:
+        return self.settle(lambda: self.driver.execute_script(SET, values))
+
+    def choose(self, name: str, value: str) -> dict:
+        return self.settle(self.driver.find_element("css selector", f"#{name} input[value='{value}']").click)
+
+    def again(self) -> dict:
+        return self.settle(self.driver.find_element("id", "again").click)
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("view") / "explorer.html"
+    return view.write_explorer([LUTS / "fitted", LUTS / "printed"], path, SIZES)
+
+
+@pytest.fixture(scope="module")
+def page(file):
+    with chromium(520, 900) as driver:
+        driver.get(file.as_uri())
+        page = Page(driver)
+        page.again()
+        assert page.read()["trouble"] == ""
+        yield page
+
+
+def tables_of(model: str, name: str):
+    if name == "shipped":
+        return read_model(LUTS / model)
+    return [size.table_of_size(lobe, int(name), int(name)).table for lobe in MODELS[model].lobes]
+
+
+def expected(model: str, size: str, lobe: str, record) -> np.ndarray:
+    at = {"direct": 0, "multiple": 4, "mixture": 8}[lobe]
+    return Reference(tables_of(model, size))(np.float32([record]))[0, at : at + 4]
+
+
+SLIDERS = ("theta_r", "phi_r", "weight", "u_theta", "u_phi", "u_lobe")
+STATES = [  # model, size, lobe; theta_r, phi_r in degrees; weight, u_theta, u_phi, u_lobe
+    ("fitted", "shipped", "direct", 20.0, 0.0, 0.5, 0.5, 0.5, 0.25),
+    ("printed", "16", "mixture", -61.5, 133.0, 0.35, 0.013, 0.871, 0.9),
+    ("fitted", "32", "multiple", 90.0, -180.0, 0.0, 0.999, 1.0, 0.0),
+    ("printed", "shipped", "mixture", -90.0, 180.0, 1.0, 0.0, 0.25, 0.5),
+]
+
+
+@pytest.mark.parametrize("state", STATES, ids=lambda s: "-".join(map(str, s[:3])))
+def test_numbers_on_the_page_are_those_of_c(page, state):
+    model, name, lobe, *numbers = state
+    for control, value in (("model", model), ("size", name), ("lobe", lobe)):
+        page.choose(control, value)
+    shown = page.slide(**dict(zip(SLIDERS, numbers, strict=True)))
+    assert shown["sliders"] == pytest.approx(numbers, abs=1e-9)
+    theta_r, phi_r, weight, u_theta, u_phi, u_lobe = numbers
+    viewer = np.radians([theta_r, phi_r])
+    record = np.zeros(INPUTS)
+    record[:6] = [*viewer, u_theta, u_phi, u_lobe, weight]
+    want = expected(model, name, lobe, record)
+    assert shown["one"][0] == pytest.approx(want[0], abs=2e-6)
+    assert np.cos(shown["one"][1] - want[1]) == pytest.approx(1, abs=1e-11)
+    assert shown["one"][2:] == pytest.approx(want[2:].tolist(), rel=1e-4)
+    first = 2 * (lobe == "multiple")
+    if lobe != "mixture":
+        assert shown["more"]["inverted"][first] == pytest.approx(u_theta, abs=1e-5)
+
+
+@pytest.mark.parametrize("state", STATES[:3], ids=lambda s: "-".join(map(str, s[:3])))
+def test_error_on_the_page_is_the_measured_one(page, state):
+    model, name, _, theta_r, *_ = state
+    page.choose("model", model)
+    page.choose("size", name)
+    shown = page.slide(theta_r=theta_r)
+    for k, (table, lobe) in enumerate(zip(tables_of(model, name), MODELS[model].lobes, strict=True)):
+        errors = measure(table, lobe, quantiles=False)
+        row = (np.radians(theta_r) / np.pi + 0.5) * (table.height - 1)
+        assert shown["rows"][k] == pytest.approx(row, abs=0.006)
+        nearest = np.abs(errors.theta_r - np.radians(theta_r)).argmin()
+        around = errors.variance[max(nearest - 1, 0) : nearest + 2]
+        assert around.min() * 0.99 <= shown["variance"][k] <= around.max() * 1.01
+
+
+def test_histogram_fits_the_density_and_a_wrong_density_does_not(page):
+    """Significance 1e-6 for 100,000 samples of each lobe; then the density of a viewer 2 degrees off."""
+    page.choose("samples", "100000")
+    page.choose("model", "fitted")
+    page.slide(theta_r=35.0)
+    for lobe in ("direct", "multiple", "mixture"):
+        shown = page.choose("lobe", lobe)
+        assert shown["drawn"] == 100_000
+        for fit in shown["fits"]:
+            assert fit["degrees"] > 20
+            assert fit["p"] > 1e-6, fit
+            assert fit["p"] == pytest.approx(stats.chi2.sf(fit["value"], fit["degrees"]), abs=1e-9)
+            assert f"{fit['value']:.1f} on {fit['degrees']} degrees" in fit["text"]
+    page.choose("lobe", "multiple")
+    repaint = "window.explorer.state.theta_r += 2; document.body.style.width = '97%'"  # draws nothing new
+    page.driver.execute_script(repaint)
+    time.sleep(0.5)
+    wrong = page.settle(lambda: None)
+    assert wrong["drawn"] == 100_000
+    assert wrong["fits"][0]["p"] < 1e-6
+    page.driver.execute_script("document.body.style.width = ''")
+    page.choose("samples", "10000")
+
+
+def test_keep_drawing_adds_samples_and_draw_again_starts_over(page):
+    page.choose("samples", "1000")
+    box = page.driver.find_element("id", "keep")
+    box.click()
+    page.wait("return window.explorer.counted.n >= 3000")
+    assert page.settle(box.click)["drawn"] % 1000 == 0
+    assert page.again()["drawn"] == 1000
+    page.choose("samples", "10000")
+
+
+def test_keyboard_alone_reaches_and_moves_the_controls(page):
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    driver = page.driver
+    page.choose("lobe", "mixture")
+    page.choose("model", "fitted")
+    driver.execute_script(
+        "document.activeElement.blur(); window.getSelection().removeAllRanges(); scrollTo(0, 0)"
+    )
+    reached = []
+    for _ in range(20):
+        ActionChains(driver).send_keys(Keys.TAB).perform()
+        reached.append(driver.execute_script("const e = document.activeElement; return e.name || e.id"))
+    assert {"lobe", "size", "samples", "again", "keep", "sphere", *SLIDERS} <= set(reached)
+    slider = driver.find_element("id", "theta_r")
+    page.slide(theta_r=10)
+    assert page.settle(lambda: slider.send_keys(Keys.ARROW_RIGHT))["sliders"][0] == 10.5
+    radio = driver.find_element("css selector", "#model input[value='fitted']")
+    page.settle(lambda: radio.send_keys(Keys.ARROW_RIGHT))
+    assert driver.execute_script("return window.explorer.state.model") == "printed"
+    before = driver.execute_script("return window.explorer.state.yaw")
+    page.settle(lambda: driver.find_element("id", "sphere").send_keys(Keys.ARROW_LEFT))
+    assert driver.execute_script("return window.explorer.state.yaw") != before
+
+
+@pytest.mark.parametrize("width", [360, 900, 1440])
+def test_page_fits_narrow_and_wide_screens(page, width, tmp_path):
+    """No sideways scrolling; on the screenshot the sphere and every chart show more than one colour."""
+    driver = page.driver
+    page.choose("model", "fitted")
+    metrics = {"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": False}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    try:
+        page.again()
+        assert driver.execute_script("return document.documentElement.scrollWidth <= window.innerWidth")
+        for name in ("sphere", "ramp", "theta_chart", "phi_chart", "texture_0", "error_chart"):
+            picture = tmp_path / f"{name}.png"
+            driver.find_element("id", name).screenshot(str(picture))
+            colours = Image.open(picture).convert("RGB").getcolors(1 << 24)
+            assert len(colours) > 12, name
+    finally:
+        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_page_needs_no_network(page, file):
+    text = file.read_text()
+    assert re.findall(r"""(?:src|href)\s*=|url\(|@import|fetch\(|XMLHttpRequest|https?://""", text) == []
+    assert page.driver.execute_script("return performance.getEntriesByType('resource').length") == 0
+
+
+def data_of(text: str) -> dict:
+    return json.loads(re.search(r'id="data">(.*?)</script>', text)[1])
+
+
+def test_page_holds_the_shipped_shader_and_tables(file):
+    text = file.read_text()
+    assert (SHADERS / "hairlut.glsl").read_text() in text
+    data = data_of(text)
+    assert set(data["models"]) == {"fitted", "printed"}
+    assert set(data["models"]["fitted"]["sizes"]) == {"shipped", *map(str, SIZES)}
+
+
+def test_shipped_page_is_made_of_what_is_shipped():
+    """The page in luts/report is generated: run hairlut view when shader, viewer or table change."""
+    text = (LUTS / "report" / "explorer.html").read_text()
+    assert (SHADERS / "hairlut.glsl").read_text() in text
+    assert (view.VIEWER / "explorer.js").read_text() in text
+    assert (view.VIEWER / "style.css").read_text() in text
+    models = data_of(text)["models"]
+    for name in MODELS:
+        want = [view._table(table, None)["texels"] for table in read_model(LUTS / name)]
+        assert [table["texels"] for table in models[name]["sizes"]["shipped"]] == want
+
+
+def test_command_writes_the_page_and_names_what_is_missing(tmp_path, capsys):
+    assert main(["view", str(tmp_path / "absent")]) == 2
+    assert "expected a directory that holds direct_theta.exr" in capsys.readouterr().err
+    out = tmp_path / "page.html"
+    assert main(["view", str(LUTS / "fitted"), "--out", str(out)]) == 0
+    assert str(out) in capsys.readouterr().out
+    assert set(data_of(out.read_text())["models"]) == {"fitted"}
+
+
+def test_a_model_without_known_lobes_is_shown_as_it_is(tmp_path):
+    """Only its own tables, and no error: the exact lobe is not in the file."""
+    from dataclasses import replace
+
+    from hairlut import exr
+
+    for table in read_model(LUTS / "fitted"):
+        exr.write(tmp_path / f"{table.name}.exr", replace(table, model="mine"))
+    model = data_of(view.page([tmp_path]))["models"]["mine"]
+    assert set(model["sizes"]) == {"shipped"}
+    assert all(table["variance"] is None for table in model["sizes"]["shipped"])

@@ -1,4 +1,4 @@
-"""Signs: which way the lobes lean, and what an azimuth is measured from. The tilt is large: the readings differ."""
+"""Signs: which way the lobes lean, and what an azimuth is measured from, at a large tilt."""
 
 import numpy as np
 import pytest

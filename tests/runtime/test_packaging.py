@@ -1,4 +1,4 @@
-"""The library from outside: a tiny project built in each of the three ways that CMake and pkg-config users link."""
+"""The library from outside: a tiny project built in each of the three ways that users link."""
 
 import os
 

@@ -1,0 +1,156 @@
+"""The batch kernels give the bits of the one-direction functions, on every instruction set that can be run here."""
+
+import platform
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from runtime.c_library import BUILD, HERE, RUNTIME, build, run, tool
+
+SOURCE = RUNTIME / "src"
+CORE = (
+    "sample",
+    "mixture",
+    "frame",
+    "model",
+    "builtin",
+    "builtin_tables",
+    "batch",
+    "batch_portable",
+)
+KERNELS = {
+    "avx2": ["-mavx2", "-mbmi2", "-mpopcnt"],
+    "avx512": [
+        "-mavx512f",
+        "-mavx512bw",
+        "-mavx512dq",
+        "-mavx512vl",
+        "-mbmi2",
+        "-mpopcnt",
+    ],
+    "neon": [],
+}
+HERE_RUN = (
+    ("neon",) if platform.machine() in ("aarch64", "arm64") else ("avx2", "avx512")
+)
+INCLUDE = [f"-I{RUNTIME / 'include'}", f"-I{SOURCE}"]
+# the library's flags: no fused multiply-add, no errno
+COMMON = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-fno-math-errno",
+    "-ffp-contract=off",
+    *INCLUDE,
+]
+
+
+def compiled(name: str, compiler: str, *flags: str, kernels=HERE_RUN) -> Path:
+    """batch_check with the library's sources, compiled anew with these flags."""
+    folder = BUILD / "tests" / f"batch-{name}"
+    folder.mkdir(parents=True, exist_ok=True)
+    units = [(SOURCE / f"{unit}.c", []) for unit in CORE]
+    units += [(SOURCE / f"batch_{kernel}.c", KERNELS[kernel]) for kernel in kernels]
+    units.append((HERE / "batch_check.c", []))
+    objects = []
+    for source, extra in units:
+        objects.append(folder / f"{source.stem}.o")
+        run(compiler, *COMMON, *flags, *extra, "-c", source, "-o", objects[-1])
+    run(compiler, *flags, *objects, "-o", folder / "batch_check", "-lm")
+    return folder / "batch_check"
+
+
+def checked(*command) -> dict[str, str]:
+    """Checksum of all results, by set of kernels; fails with what differs."""
+    done = subprocess.run(
+        [str(word) for word in command], text=True, capture_output=True, timeout=600
+    )
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
+    return dict(re.findall(r"^set (\w+)\nchecksum (\w+)$", done.stdout, re.MULTILINE))
+
+
+@pytest.fixture(scope="module")
+def reference() -> dict[str, str]:
+    """What the library as it is shipped computes."""
+    program = BUILD / "tests" / "batch_check"
+    program.parent.mkdir(parents=True, exist_ok=True)
+    compiler = tool("cc")
+    run(
+        compiler,
+        *COMMON,
+        "-O1",
+        HERE / "batch_check.c",
+        build() / "libhairlut.a",
+        "-o",
+        program,
+        "-lm",
+    )
+    return checked(program)
+
+
+def test_every_set_of_kernels_equals_the_one_direction_functions(reference):
+    assert {"public", "portable"} <= set(reference)
+    assert len(set(reference.values())) == 1
+
+
+def test_widest_set_of_this_processor_is_offered(reference):
+    flags = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
+    if "avx2" not in flags:
+        pytest.skip("this processor has no AVX2: its kernels are not run")
+    assert "avx2" in reference
+    assert ("avx512" in reference) == all(
+        f"avx512{part}" in flags for part in ("f", "bw", "dq", "vl")
+    )
+
+
+@pytest.mark.parametrize(
+    "flags", [["-O3"], ["-O2", "-DHAIRLUT_PLAIN_QUAD"], ["-O0"]], ids=" ".join
+)
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_bits_do_not_depend_on_the_compiler(reference, compiler, flags):
+    if not tool(compiler):
+        pytest.skip(f"{compiler} is missing")
+    program = compiled(f"{compiler}{''.join(flags)}", compiler, *flags)
+    assert set(checked(program).values()) == set(reference.values())
+
+
+def test_no_kernel_reads_or_writes_outside_its_arrays(reference):
+    program = compiled(
+        "asan",
+        tool("cc"),
+        "-O1",
+        "-g",
+        "-fsanitize=address,undefined",
+        "-fno-sanitize-recover=all",
+    )
+    assert set(checked(program).values()) == set(reference.values())
+
+
+def test_neon_equals_the_other_processors_bit_for_bit(reference):
+    compiler, emulator = (
+        tool("aarch64-linux-gnu-gcc"),
+        tool("qemu-aarch64") or tool("qemu-aarch64-static"),
+    )
+    if not compiler or not emulator:
+        pytest.skip(
+            "NEON is not run: apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
+        )
+    program = compiled("aarch64", compiler, "-O2", "-static", kernels=("neon",))
+    results = checked(emulator, program)
+    assert "neon" in results
+    assert set(results.values()) == set(reference.values())
+
+
+def test_fused_multiply_add_is_noticed(reference):
+    """The check rejects a build whose one-direction functions round differently."""
+    if "avx2" not in reference:
+        pytest.skip("this processor has no AVX2")
+    folder = compiled("fma", tool("cc"), "-O2", "-mfma", "-ffp-contract=fast").parent
+    done = subprocess.run(
+        [str(folder / "batch_check")], text=True, capture_output=True, timeout=600
+    )
+    assert done.returncode == 1 or set(
+        re.findall(r"checksum (\w+)", done.stdout)
+    ) != set(reference.values())

@@ -28,7 +28,7 @@ DEFAULT_TOLERANCE = 1e-4
 DEFAULT_LIMIT = 256
 CELL = Cell("quadratic", 0.9)
 MIN_STEPS = 2.0
-EXPONENTS = range(-24, -9)  # of e
+EXPONENTS = range(-30, 1)  # of e
 FIRST_EXPONENT = -16
 PROBE_HEIGHT = 33  # rows on which a width alone is judged
 WIDEST = 2
@@ -121,9 +121,10 @@ class _Trials:
 
     def _variance(self, width: int, height: int, exponent: int, between: int) -> float:
         """V at the worst inclination; infinite where a cell is flat or too narrow for float32."""
+        self.rows(height)  # what is wrong with the lobe itself is raised here
         try:
             table = self.table(width, height, exponent)
-        except HairlutError:
+        except HairlutError:  # flat cells
             return np.inf
         if narrowest_cell(table.texels) < MIN_STEPS:
             return np.inf

@@ -26,7 +26,7 @@ from .warp import Warp
 LOBES = (PRINTED.direct_theta, FITTED.direct_theta, FITTED.direct_phi, FITTED.multiple_theta)
 LINEAR, CURVED = Cell("linear"), Cell("quadratic", 0.9)
 CELLS = (LINEAR, CURVED)
-EXPONENTS = range(-24, -9)
+EXPONENTS = range(-26, -7)
 LEAST_STEPS = 2.0
 QUANTILE = 2.0**-25
 

@@ -1,9 +1,8 @@
 """The closed form of a Gaussian lobe cut to its domain (derivation.md). The bake never imports it: it is what
 the numerical integration is tested against.
 
-All of it works on logarithms of the smaller tails: with alpha and beta the ends of the domain in units of
-sigma from the mean, mirrored where needed so that the mass lies towards beta, Phi(alpha) and Phi(beta) are
-both tails below the mean or straddle it, and neither they nor their difference is ever taken from 1.
+All of it works on logarithms of the smaller tails, with alpha and beta the ends of the domain in units of sigma
+from the mean: nothing is ever taken from 1, and a mass may underflow.
 """
 
 import numpy as np
@@ -66,15 +65,11 @@ def quantile(lobe: Lobe, theta_r: Array, m: Array, upper: Array) -> Array:
     mean, sigma = _moments(lobe, theta_r)
     low, high = lobe.domain
     alpha, beta = (low - mean) / sigma, (high - mean) / sigma
-    mirror = alpha + beta > 0
-    a, b = np.where(mirror, -beta, alpha), np.where(mirror, -alpha, beta)
-    below = np.where(np.asarray(upper) != mirror, 1 - m, m)  # part of the mass below, after mirroring
-    above = np.where(np.asarray(upper) != mirror, m, 1 - m)
     with np.errstate(divide="ignore"):
-        log_below, log_above = np.log(below), np.log(above)
-    # Phi(z) = above Phi(a) + below Phi(b), and the same for the complement: sums of positive terms
-    log_p = np.logaddexp(log_above + log_ndtr(a), log_below + log_ndtr(b))
-    log_q = np.logaddexp(log_above + log_ndtr(-a), log_below + log_ndtr(-b))
+        log_below, log_above = np.log(np.where(upper, 1 - m, m)), np.log(np.where(upper, m, 1 - m))
+    # (A7) and (A8): Phi(z) and its complement as sums of positive terms, of which the smaller is inverted
+    log_p = np.logaddexp(log_above + log_ndtr(alpha), log_below + log_ndtr(beta))
+    log_q = np.logaddexp(log_above + log_ndtr(-alpha), log_below + log_ndtr(-beta))
     z = np.where(log_p < log_q, ndtri_exp(np.minimum(log_p, -0.5)), -ndtri_exp(np.minimum(log_q, -0.5)))
-    x = np.clip(mean + sigma * np.where(mirror, -z, z), low, high)
+    x = np.clip(mean + sigma * z, low, high)
     return np.where(np.asarray(m) == 0, np.where(upper, high, low), x)

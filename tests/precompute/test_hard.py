@@ -64,7 +64,7 @@ def test_refusals_say_what_is_wrong(name, message):
 @pytest.mark.parametrize("upper", [False, True])
 def test_draws_at_the_ends_are_in_the_domain_with_a_density(shipped, upper):
     table, _, lobe, _ = shipped
-    low, high = np.float32(table.domain)
+    low, high = np.float32(table.domain).astype(float)
     for m in (0.0, 2.0**-32, 2.0**-28, 2.0**-24):
         x, q = interpolant.sample_tail(
             table, table.theta_r, np.full(table.height, m), np.full(table.height, upper)

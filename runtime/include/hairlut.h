@@ -166,18 +166,17 @@ typedef struct hairlut_frame {
 } hairlut_frame;
 
 /* theta = asin(w.tangent), phi = atan2(w.binormal, w.normal), from a unit vector w. On the pole, where w = +-tangent,
- * phi is 0. A vector whose length is not 1 is normalised; zero or NaN gives theta = phi = 0. */
+ * phi is 0. A vector of another length gives the same; zero, infinity or NaN gives theta = phi = 0. */
 HAIRLUT_API void hairlut_angles(const hairlut_frame *frame, const float direction[3], float *theta, float *phi);
 
-/* The unit vector of (theta, phi) in world space. */
+/* The unit vector of (theta, phi) in world space. theta is clamped to [-pi/2, pi/2], phi any; NaN gives some direction. */
 HAIRLUT_API void hairlut_direction(const hairlut_frame *frame, float theta, float phi, float direction[3]);
 
 /* ---- many directions: structure of arrays --------------------------------------------------------------------- */
 
 /* As the functions above for i in [0,n). Every pointer addresses n floats of any alignment; n may be 0. An output may be
- * the same array as an input (in place, from the same first element), never overlap one otherwise. Results differ from
- * the one-direction forms by at most 1 ulp in the angle and 1e-5 relative in the density. The widest kernel that the
- * processor runs is chosen at run time. */
+ * the same array as an input (in place, from the same first element), never overlap one otherwise. Results equal those of
+ * the one-direction forms bit for bit, whichever kernel runs. The widest one that the processor has is chosen at run time. */
 typedef struct hairlut_samples {
     float *theta_i;
     float *phi_i;
@@ -193,6 +192,12 @@ HAIRLUT_API void hairlut_pdf_direct_n(const hairlut_model *model, size_t n, cons
                                       const float *theta_i, const float *phi_i, float *pdf_angle);
 HAIRLUT_API void hairlut_pdf_multiple_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
                                         const float *theta_i, const float *phi_i, float *pdf_angle);
+HAIRLUT_API void hairlut_sample_mixture_n(const hairlut_model *model, size_t n, const float *direct_weight,
+                                          const float *theta_r, const float *phi_r, const float *u_lobe,
+                                          const float *u_theta, const float *u_phi, hairlut_samples out);
+HAIRLUT_API void hairlut_pdf_mixture_n(const hairlut_model *model, size_t n, const float *direct_weight,
+                                       const float *theta_r, const float *phi_r, const float *theta_i,
+                                       const float *phi_i, float *pdf_angle);
 
 /* ---- files (library hairlut_exr) ------------------------------------------------------------------------------ */
 

@@ -26,6 +26,12 @@ static inline float hairlut_incident_azimuth(const hairlut_model *model, float p
     return hairlut_wrap(model->azimuth == HAIRLUT_AZIMUTH_SUM ? phi - r : phi + r, -hairlut_pi);
 }
 
+/* The density of a mixture, from the densities of both lobes. */
+static inline float hairlut_mix(float direct_weight, float direct, float multiple)
+{
+    return direct_weight * direct + (1.0f - direct_weight) * multiple;
+}
+
 static inline hairlut_sample hairlut_finish(float theta_i, float phi_i, float pdf)
 {
     const hairlut_sample s = {theta_i, phi_i, pdf, hairlut_pdf_to_solid_angle(pdf, theta_i)};

@@ -5,8 +5,9 @@ float hairlut_pdf_mixture(const hairlut_model *model, float direct_weight, float
                           float phi_i)
 {
     const float w = hairlut_clamp(direct_weight, 0.0f, 1.0f);
-    return w * hairlut_pdf_direct(model, theta_r, phi_r, theta_i, phi_i)
-           + (1.0f - w) * hairlut_pdf_multiple(model, theta_r, phi_r, theta_i, phi_i);
+    const float mixed = hairlut_mix(w, hairlut_pdf_direct(model, theta_r, phi_r, theta_i, phi_i),
+                                    hairlut_pdf_multiple(model, theta_r, phi_r, theta_i, phi_i));
+    return direct_weight == direct_weight ? mixed : 0.0f;
 }
 
 hairlut_sample hairlut_sample_mixture(const hairlut_model *model, float direct_weight, float theta_r, float phi_r,
@@ -25,5 +26,5 @@ hairlut_sample hairlut_sample_mixture(const hairlut_model *model, float direct_w
         direct = hairlut_pdf_direct(model, theta_r, phi_r, s.theta_i, s.phi_i);
     }
     const int known = direct_weight == direct_weight && u_lobe == u_lobe && hairlut_known(theta_r, phi_r, u_theta, u_phi);
-    return hairlut_finish(s.theta_i, s.phi_i, known ? w * direct + (1.0f - w) * multiple : 0.0f);
+    return hairlut_finish(s.theta_i, s.phi_i, known ? hairlut_mix(w, direct, multiple) : 0.0f);
 }

@@ -232,6 +232,37 @@ static void check_set(const hairlut_batch *batch, const hairlut_model *model, si
     }
 }
 
+/* The mixture's _n functions are put together from the public kernels: checked once. */
+static void check_mixture(const hairlut_model *model, size_t n)
+{
+    float *const in[4] = {inputs[0], inputs[1], inputs[2], inputs[3]};
+    float weight[MOST], u_lobe[MOST], got[4][MOST], pdf[MOST];
+    const hairlut_samples out = {got[0], got[1], got[2], got[3]};
+    fill_inputs(in, n);
+    for (size_t i = 0; i < n; ++i) {
+        weight[i] = i % 9 == 8 ? hard_units[random_bits() % 14] : random_unit();
+        u_lobe[i] = i % 11 == 10 ? hard_units[random_bits() % 14] : random_unit();
+        const hairlut_sample s = hairlut_sample_mixture(model, weight[i], in[0][i], in[1][i], u_lobe[i], in[2][i], in[3][i]);
+        const float fields[4] = {s.theta_i, s.phi_i, s.pdf_angle, s.pdf_solid_angle};
+        for (int k = 0; k < 4; ++k)
+            expected[k][i] = fields[k];
+    }
+    hairlut_sample_mixture_n(model, n, weight, in[0], in[1], u_lobe, in[2], in[3], out);
+    for (int k = 0; k < 4; ++k)
+        compare("mixture sample", "public", n, expected[k], got[k]);
+    const hairlut_samples in_place = {weight, u_lobe, NULL, NULL};
+    make_directions(n);
+    for (size_t i = 0; i < n; ++i)
+        expected_pdf[i] = hairlut_pdf_mixture(model, weight[i], in[0][i], in[1][i], in[2][i], in[3][i]);
+    hairlut_pdf_mixture_n(model, n, weight, in[0], in[1], in[2], in[3], pdf);
+    compare("mixture pdf", "public", n, expected_pdf, pdf);
+    fill_inputs(in, n);
+    hairlut_sample_mixture_n(model, n, weight, in[0], in[1], u_lobe, in[2], in[3], out);
+    hairlut_sample_mixture_n(model, n, weight, in[0], in[1], u_lobe, in[2], in[3], in_place);
+    compare("mixture in place", "public", n, got[0], weight);
+    compare("mixture in place", "public", n, got[1], u_lobe);
+}
+
 int main(void)
 {
     static const int sizes[][2] = {{4, 2},  {5, 3},   {6, 2},   {17, 5},  {18, 4},  {19, 3},  {33, 7},  {64, 9},   {65, 3},
@@ -243,6 +274,8 @@ int main(void)
     int count = 1;
     for (int level = 0; hairlut_batch_level(level); ++level)
         sets[count++] = hairlut_batch_level(level);
+    for (size_t n = 0; n <= 300; ++n)
+        check_mixture(hairlut_builtin(n % 2 ? "printed" : "fitted"), n);
     for (int s = 0; s < count; ++s) {
         printf("set %s\n", sets[s]->name);
         state = 1; /* each set sees the same inputs */

@@ -106,19 +106,8 @@ def refused(folder, result: int, *texts: str, file="direct_theta.exr") -> None:
         assert text in refusal.value.message, refusal.value.message
 
 
-NEEDED = [
-    "format",
-    "model",
-    "table",
-    "angle",
-    "unit",
-    "azimuth",
-    "warp",
-    "cell",
-    "theta_r_range",
-    "domain",
-    "knots",
-]
+NEEDED = ["format", "model", "table", "angle", "unit", "azimuth", "warp", "cell"]
+NEEDED += ["theta_r_range", "domain", "knots"]
 ATTRIBUTES = [f"hairlut.{name}" for name in NEEDED]
 
 

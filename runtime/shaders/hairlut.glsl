@@ -186,33 +186,33 @@ float hairlut_texel(hairlut_axis axis, hairlut_rows rows, int i)
     return hairlut_blend(a, b, rows.t);
 }
 
-/* Of one row: the cell's first texel, its width, and the width of the cell before less that of the cell after. An end cell
- * takes the curvature by which its width differs from its neighbour's. */
-vec3 hairlut_widths(hairlut_axis axis, int row, int i)
+/* Of one row: the widths of the cell before, of this cell and of the cell after, and this cell's first texel. Beyond an end
+ * of the row stands a width from which the end cell takes the curvature d - d_neighbour. */
+vec4 hairlut_widths(hairlut_axis axis, int row, int i)
 {
     int last = axis.columns - 1;
     float x0 = HAIRLUT_FETCH(axis.table, i, row);
     float x1 = HAIRLUT_FETCH(axis.table, i + 1, row);
+    float d = x1 - x0;
     float before = x0 - HAIRLUT_FETCH(axis.table, max(i - 1, 0), row);
     float after = HAIRLUT_FETCH(axis.table, min(i + 2, last), row) - x1;
-    float d = x1 - x0;
-    float bend = before - after;
     if (i == 0)
-        bend = 4.0 * (d - after);
+        before = 4.0 * d - 3.0 * after;
     else if (i == last - 1)
-        bend = 4.0 * (before - d);
-    return vec3(x0, d, bend);
+        after = 4.0 * d - 3.0 * before;
+    return vec4(before, d, after, x0);
 }
 
 /* Widths are taken in each row before they are blended: neighbouring texels subtract without rounding. */
 hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, int i)
 {
-    vec3 a = hairlut_widths(axis, rows.row, i);
-    vec3 b = hairlut_widths(axis, rows.row + 1, i);
+    vec4 a = hairlut_widths(axis, rows.row, i);
+    vec4 b = hairlut_widths(axis, rows.row + 1, i);
     float d = hairlut_blend_width(a.y, b.y, rows.t);
-    float bend = hairlut_blend_width(a.z, b.z, rows.t);
+    float before = hairlut_blend_width(a.x, b.x, rows.t);
+    float after = hairlut_blend_width(a.z, b.z, rows.t);
     float bound = axis.limit * d;
-    return hairlut_cell(hairlut_blend(a.x, b.x, rows.t), d, clamp(0.25 * bend, -bound, bound));
+    return hairlut_cell(hairlut_blend(a.w, b.w, rows.t), d, clamp(0.25 * (before - after), -bound, bound));
 }
 
 /* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */

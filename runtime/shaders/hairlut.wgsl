@@ -171,22 +171,21 @@ fn hairlut_texel(axis: hairlut_axis, rows: hairlut_rows, i: i32) -> f32 {
     return hairlut_blend(a, b, rows.t);
 }
 
-/* Of one row: the cell's first texel, its width, and the width of the cell before less that of the cell after. An end cell
- * takes the curvature by which its width differs from its neighbour's. */
-fn hairlut_widths(axis: hairlut_axis, row: i32, i: i32) -> vec3f {
+/* Of one row: the widths of the cell before, of this cell and of the cell after, and this cell's first texel. Beyond an end
+ * of the row stands a width from which the end cell takes the curvature d - d_neighbour. */
+fn hairlut_widths(axis: hairlut_axis, row: i32, i: i32) -> vec4f {
     let last = axis.columns - 1;
     let x0 = hairlut_fetch(axis.table, i, row);
     let x1 = hairlut_fetch(axis.table, i + 1, row);
-    let before = x0 - hairlut_fetch(axis.table, max(i - 1, 0), row);
-    let after = hairlut_fetch(axis.table, min(i + 2, last), row) - x1;
     let d = x1 - x0;
-    var bend = before - after;
+    var before = x0 - hairlut_fetch(axis.table, max(i - 1, 0), row);
+    var after = hairlut_fetch(axis.table, min(i + 2, last), row) - x1;
     if (i == 0) {
-        bend = 4.0 * (d - after);
+        before = 4.0 * d - 3.0 * after;
     } else if (i == last - 1) {
-        bend = 4.0 * (before - d);
+        after = 4.0 * d - 3.0 * before;
     }
-    return vec3f(x0, d, bend);
+    return vec4f(before, d, after, x0);
 }
 
 /* Widths are taken in each row before they are blended: neighbouring texels subtract without rounding. */
@@ -194,9 +193,10 @@ fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32) -> hairlut_
     let a = hairlut_widths(axis, rows.row, i);
     let b = hairlut_widths(axis, rows.row + 1, i);
     let d = hairlut_blend_width(a.y, b.y, rows.t);
-    let bend = hairlut_blend_width(a.z, b.z, rows.t);
+    let before = hairlut_blend_width(a.x, b.x, rows.t);
+    let after = hairlut_blend_width(a.z, b.z, rows.t);
     let bound = axis.limit * d;
-    return hairlut_cell(hairlut_blend(a.x, b.x, rows.t), d, clamp(0.25 * bend, -bound, bound));
+    return hairlut_cell(hairlut_blend(a.w, b.w, rows.t), d, clamp(0.25 * (before - after), -bound, bound));
 }
 
 /* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */

@@ -5,12 +5,14 @@ sample of each lobe and of the mixture (theta_i, phi_i, pdf_angle, pdf_solid_ang
 inverse of cos(theta_i), and the two inverted pairs of numbers.
 """
 
+import atexit
 import base64
+import contextlib
+import functools
 import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -146,7 +148,7 @@ def _run_wgpu(scene: Scene, records: np.ndarray, code: str | bytes) -> np.ndarra
     return np.frombuffer(device.queue.read_buffer(out), np.float32).reshape(-1, OUTPUTS)
 
 
-@contextmanager
+@contextlib.contextmanager
 def chromium(width: int = 1280, height: int = 900) -> Iterator:
     """A headless Chromium with WebGL2 in software, as a Selenium driver."""
     pytest.importorskip("selenium", reason="selenium is not installed: pip install selenium")
@@ -164,20 +166,28 @@ def chromium(width: int = 1280, height: int = 900) -> Iterator:
         driver.quit()
 
 
+@functools.cache
+def _webgl_page():
+    """The browser of run_webgl, kept until the process ends: starting it takes longer than a shader."""
+    open_until_exit = contextlib.ExitStack()
+    driver = open_until_exit.enter_context(chromium())
+    atexit.register(open_until_exit.close)
+    driver.get((HERE / "webgl.html").as_uri())
+    return driver
+
+
 def run_webgl(scene: Scene, records: np.ndarray) -> np.ndarray:
     """GLSL ES 3.00 in a browser: transform feedback of a vertex shader."""
-    with chromium() as driver:
-        driver.get((HERE / "webgl.html").as_uri())
-        text = driver.execute_async_script(
-            RUN_WEBGL,
-            source("harness.es.glsl", "hairlut.glsl"),
-            _text(scene.tables),
-            scene.tables.shape[1],
-            _text(scene.axes),
-            scene.azimuth,
-            _text(records),
-            len(records),
-        )
+    text = _webgl_page().execute_async_script(
+        RUN_WEBGL,
+        source("harness.es.glsl", "hairlut.glsl"),
+        _text(scene.tables),
+        scene.tables.shape[1],
+        _text(scene.axes),
+        scene.azimuth,
+        _text(records),
+        len(records),
+    )
     if text == "error: no WebGL2":
         pytest.skip("this browser has no WebGL2")
     assert not text.startswith("error:"), text

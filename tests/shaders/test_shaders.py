@@ -9,6 +9,7 @@ from shaders.agreement import (
     NUMBERS,
     SAMPLES,
     Agreement,
+    Reference,
     agreement,
     hard_records,
     model_tables,
@@ -17,6 +18,11 @@ from shaders.agreement import (
     scene,
 )
 from shaders.backends import BACKENDS, Scene
+
+from hairlut.interpolant import Cell
+from hairlut.lobes import find_model
+from hairlut.table import bake_table
+from hairlut.warp import Warp
 
 RANDOM = 100_000
 
@@ -39,10 +45,28 @@ def test_agrees_with_c_on_random_and_hard_inputs(backend: str, model: str, table
     assert result.holds(), result
 
 
+SHAPES = {  # the smallest table, a wide one, and the baseline without a warp or a curve
+    "4x2": (4, 2, "quartic e=0.0001", "quadratic limit=0.9"),
+    "130x7": (130, 7, "quartic e=1.52587890625e-05", "quadratic limit=0.5"),
+    "9x33 uniform, linear": (9, 33, "uniform", "linear"),
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_agrees_with_c_on_other_tables(backend: str, shape: str):
+    width, height, warp, cell = SHAPES[shape]
+    lobes = find_model("fitted").lobes
+    tables = [bake_table(lobe, width, height, Warp.parse(warp), Cell.parse(cell)) for lobe in lobes]
+    records = np.concatenate([hard_records(scene(tables))[::7], random_records(5000)])
+    result = agreement(Reference(tables), records, BACKENDS[backend](scene(tables), records))
+    assert result.holds(), result
+
+
 # One wrong step each; the comparison must notice all of them.
 MUTANTS = {
     "linear cells": ("axis.limit * d", "0.0 * d"),
-    "end cells without their rule": ("bend = 4.0 * (d - after)", "bend = 0.0"),
+    "end cells without their rule": ("before = 4.0 * d - 3.0 * after", "before = d"),
     "rows blended with 8 bits": ("(row, r - float(row))", "(row, floor((r - float(row)) * 256.0) / 256.0)"),
     "upper tail not folded": ("u <= 0.5 ? u : 1.0 - u", "u"),
     "difference taken for sum": ("? phi - r : phi + r", "? phi + r : phi - r"),

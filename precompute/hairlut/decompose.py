@@ -3,8 +3,8 @@
 For each theta_r, a model draws from  w A(theta_i) B(phi) + (1 - w) C(theta_i) / (2 pi),  with one weight w.
 Expectation maximisation finds the masses A, B, C and w that make the data most probable under it; no shape
 is assumed. The distribution's own marginals are the special case w = 1. Where B never falls to zero and C
-has the shape of A, several splits draw the same mixture; the search starts with B lowered by nine tenths of
-its minimum, so that what does not depend on phi tends to C.
+has the shape of A, several splits draw the same mixture; the search starts with B lowered by half of its
+minimum, so that what does not depend on phi tends to C.
 """
 
 from __future__ import annotations
@@ -22,11 +22,12 @@ LOBES = ("both", "direct", "multiple")
 MAX_STEPS = 400
 ENOUGH = 1e-7  # gain of the mean log-likelihood in a step
 NEGLIGIBLE = 0.01
+START = 0.5  # of B's minimum is left to C at first
 EVEN = 0.05
 """Share of B that stays even over the circle, and"""
 FILL = 0.05
-"""share of C that keeps the marginal's shape: without them each part takes what the other leaves, with gaps that
-a table spends its columns on. They cost a few thousandths of relative variance."""
+"""share of C that keeps the marginal's shape: without them each part takes what the other leaves, with gaps
+that a table spends its columns on. They cost a few thousandths of relative variance."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ def decompose(
 
 def _start(whole: Split, even: Array) -> Split:
     lowest = (whole.direct_phi / even).min(axis=1, keepdims=True)
-    raised = whole.direct_phi - 0.9 * lowest * even
+    raised = whole.direct_phi - START * lowest * even
     weight = float(np.clip(raised.sum(axis=1).mean(), 0.05, 0.95))
     return Split(weight, whole.direct_theta, raised / raised.sum(axis=1, keepdims=True), whole.direct_theta)
 

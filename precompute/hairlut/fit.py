@@ -197,8 +197,8 @@ def _left_out(theta_r: Array, values: Array, weight: Array, degree: int) -> floa
 
 
 def _peaks(density: Array) -> int:
-    """How many maxima above a tenth of the highest remain after a moving average over five cells."""
-    smooth = np.convolve(np.pad(density, 2, mode="edge"), np.ones(5) / 5, mode="valid")
+    """How many maxima above a tenth of the highest remain after a moving average over three cells."""
+    smooth = np.convolve(np.pad(density, 1, mode="edge"), np.ones(3) / 3, mode="valid")
     rises = np.diff(np.concatenate([[0.0], smooth, [0.0]])) > 0
     tops = np.flatnonzero(rises[:-1] & ~rises[1:])
     kept: list[int] = []

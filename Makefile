@@ -47,8 +47,8 @@ demo: bake build
 	@$(LIBRARY)/print_samples $(MODELS)
 
 lint: setup
-	@$(BIN)/ruff check precompute tests runtime
-	@$(BIN)/ruff format --check precompute tests runtime
+	@$(BIN)/ruff check --config precompute/pyproject.toml precompute tests runtime
+	@$(BIN)/ruff format --config precompute/pyproject.toml --check precompute tests runtime
 
 test: lint build
 	$(BIN)/python -m pytest

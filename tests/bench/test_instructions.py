@@ -1,0 +1,117 @@
+"""Instructions a sample, counted by callgrind: the guard against getting slower that no busy machine disturbs.
+
+Valgrind runs no AVX-512, so the functions over arrays are counted on their AVX2 kernels. The pinned numbers
+are those of gcc 12 -O2; other compilers are held to the same within the tolerance.
+"""
+
+import platform
+import re
+import subprocess
+
+import pytest
+from runtime.c_library import BUILD, ROOT, RUNTIME, run, tool
+
+TOLERANCE = 0.15
+PINNED = {
+    "sample_direct": 389,
+    "sample_multiple": 239,
+    "pdf_direct": 624,
+    "pdf_multiple": 290,
+    "sample_direct_n": 47,
+    "sample_multiple_n": 27,
+    "pdf_direct_n": 139,
+    "pdf_multiple_n": 65,
+    "sample_mixture_n": 370,
+}
+
+
+@pytest.fixture(scope="module")
+def program():
+    if platform.machine() not in ("x86_64", "AMD64"):
+        pytest.skip("instructions are pinned for x86-64")
+    if not tool("valgrind"):
+        pytest.skip("instructions are not counted: apt-get install valgrind")
+    folder = BUILD / "tests" / "instructions"
+    folder.mkdir(parents=True, exist_ok=True)
+    kernels = {"batch_avx2": ["-mavx2", "-mbmi2", "-mpopcnt"]}
+    kernels["batch_avx512"] = [
+        f"-mavx512{part}" for part in ("f", "bw", "dq", "vl")
+    ] + kernels["batch_avx2"]
+    names = [
+        "sample",
+        "mixture",
+        "model",
+        "builtin",
+        "builtin_tables",
+        "batch",
+        "batch_mixture",
+        "batch_portable",
+    ]
+    flags = [
+        "-std=c99",
+        "-O2",
+        "-fno-math-errno",
+        "-ffp-contract=off",
+        f"-I{RUNTIME / 'include'}",
+    ]
+    objects = []
+    for name in (*names, *kernels):
+        objects.append(folder / f"{name}.o")
+        run(
+            "cc",
+            *flags,
+            *kernels.get(name, []),
+            "-c",
+            RUNTIME / "src" / f"{name}.c",
+            "-o",
+            objects[-1],
+        )
+    run(
+        "cc",
+        *flags,
+        ROOT / "tests" / "bench" / "instructions.c",
+        *objects,
+        "-o",
+        folder / "instructions",
+        "-lm",
+    )
+    return folder / "instructions"
+
+
+def instructions(program, what: str) -> float:
+    """Instructions a sample of one function."""
+    done = subprocess.run(
+        [
+            tool("valgrind"),
+            "--tool=callgrind",
+            "--collect-atstart=no",
+            "--toggle-collect=counted",
+            f"--callgrind-out-file={program.parent}/{what}.callgrind",
+            str(program),
+            what,
+            "fitted",
+        ],
+        check=True,
+        text=True,
+        capture_output=True,
+        timeout=300,
+    )
+    collected = int(re.search(r"Collected : (\d+)", done.stderr).group(1))
+    return collected / int(done.stdout)
+
+
+@pytest.mark.parametrize("what", PINNED)
+def test_instructions_a_sample(program, what):
+    counted = instructions(program, what)
+    pinned = PINNED[what]
+    assert counted < (1 + TOLERANCE) * pinned, (
+        f"{what}: {counted:.1f} instructions, pinned {pinned}"
+    )
+    assert counted > (1 - 2 * TOLERANCE) * pinned, (
+        f"{what}: {counted:.1f} instructions: pin that instead of {pinned}"
+    )
+
+
+def test_counting_counts(program):
+    """A function that does nothing costs nothing: what is counted is the samples, not the program."""
+    assert instructions(program, "nothing") < 0.5

@@ -20,7 +20,12 @@
  *   - NaN in any argument, or an infinite azimuth, gives a density of 0, with finite angles inside their ranges.
  *     An infinite theta_r or u is clamped like any other value outside its range.
  *   - theta_i outside [-pi/2, pi/2] has density 0.
- *   - no allocation, no global state, no errno. A `const hairlut_model` may be used by any number of threads at once.
+ *   - no allocation, no global state, no errno. Arrays belong to the caller and are not kept.
+ *
+ * Threads and ownership, for every function of this header: the library has no state, so any function may run in any
+ * number of threads at once, also on the same `const hairlut_model`; only hairlut_free needs the model for itself.
+ * Strings that are returned, and compiled-in models, are static: never freed. What hairlut_model_create and hairlut_load
+ * return belongs to the caller, until hairlut_free. What is passed in is only read while the call lasts, never kept.
  */
 #ifndef HAIRLUT_H
 #define HAIRLUT_H
@@ -114,7 +119,7 @@ HAIRLUT_API void hairlut_free(hairlut_model *model);
 
 typedef enum hairlut_part { HAIRLUT_DIRECT_THETA = 0, HAIRLUT_DIRECT_PHI = 1, HAIRLUT_MULTIPLE_THETA = 2 } hairlut_part;
 
-/* Columns and rows of one of a model's tables. */
+/* Columns and rows of one of a model's tables; `part` must be one of the three. */
 HAIRLUT_API void hairlut_table_size(const hairlut_model *model, hairlut_part part, int *width, int *height);
 
 /* ---- one direction -------------------------------------------------------------------------------------------- */

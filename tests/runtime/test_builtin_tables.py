@@ -1,4 +1,4 @@
-"""runtime/src/builtin_tables.c, kept in the repository so that a C build needs no Python, is what luts/ exports to."""
+"""runtime/src/builtin_tables.c, committed so that a C build needs no Python, is what luts/ exports to."""
 
 from runtime.c_library import MODELS, ROOT, RUNTIME, run, tool
 

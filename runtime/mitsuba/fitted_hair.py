@@ -19,6 +19,7 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from hairscene.scene import Hair, scene_dict, strand_points, write_strands
 
 from hairlut import cli
 from hairlut.distribution import of_grid
@@ -46,6 +47,7 @@ HAIRS = {
         "azimuthal_roughness": 0.8,
     },
 }
+IMAGE, STRANDS, SPP, BATCHES = (64, 48), 4000, 16, 12
 VIEWERS = (0.0, 30.0, -60.0)
 SIZE = "96x37"  # rows every 5 degrees: the grid's are among them
 THETA_R = np.radians(np.arange(-85.0, 86.0, 10.0))
@@ -143,6 +145,8 @@ def estimates(mi: Any, bsdf: Any, theta_r: float, draws: int, seed: int) -> np.n
 
 def compare(mi: Any, name: str, folder: Path, draws: int) -> dict:
     """All numbers of one hair."""
+    strands = folder / "strands.txt"
+    write_strands(strand_points(Hair(strands=STRANDS)), strands)
     nested = {"type": "hair", **HAIRS[name]}
     start = perf_counter()
     values = evaluate(mi, mi.load_dict(nested))
@@ -171,7 +175,25 @@ def compare(mi: Any, name: str, folder: Path, draws: int) -> dict:
             "per_offset": per_offset(values),
         },
         "viewers": rows,
+        "render": render(mi, kinds, strands),
     }
+
+
+def render(mi: Any, kinds: dict[str, dict], strands: Path) -> dict:
+    """One scattering found by BSDF sampling alone, sky and lamps: the image's mean, its standard error,
+    and the mean variance of a pixel at one sample, relative to the square of the image's mean."""
+    report = {}
+    for kind, bsdf in kinds.items():
+        integrator = {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1}
+        scene = mi.load_dict({**scene_dict(mi, strands, bsdf, IMAGE, True), "integrator": integrator})
+        images = np.array([np.array(mi.render(scene, spp=SPP, seed=k)).mean(axis=2) for k in range(BATCHES)])
+        means = images.mean(axis=(1, 2))
+        report[kind] = {
+            "mean": float(means.mean()),
+            "standard_error": float(means.std(ddof=1) / np.sqrt(BATCHES)),
+            "relative_variance": float(SPP * images.var(axis=0, ddof=1).mean() / means.mean() ** 2),
+        }
+    return report
 
 
 def statistics(values: np.ndarray) -> dict:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy import integrate, special
+from scipy import integrate, interpolate, special
 
 from hairlut import interpolant, modelfile
 from hairlut.lobes import HALF_PI
@@ -173,6 +173,17 @@ def test_a_density_tabulated_from_cells_samples_the_density_itself(cells):
     for theta_r in np.radians([-60.0, -32.5, 0.0, 2.5, 40.0]):
         mass = integrate.quad(skewed, -HALF_PI, HALF_PI, args=(theta_r,), points=[-0.8 * theta_r])[0]
         assert variance(table, lambda x, t=theta_r, m=mass: skewed(x, t) / m, theta_r) <= TOLERANCE
+
+
+def test_measured_cells_from_a_file_meet_the_tolerance(bake):
+    """Against the monotone cubic through the file's own cumulative shares, put together here."""
+    table = bake("measured_cells.py", "direct_theta")
+    rows = np.loadtxt(EXAMPLES / "brown_hair_cells.csv", delimiter=",", skiprows=3)
+    edges = np.linspace(-HALF_PI, HALF_PI, rows.shape[1])
+    for row in rows[[4, 9, 16]]:
+        share = (1 - FLOOR) * row[1:] / row[1:].sum() + FLOOR / 32
+        cumulative = interpolate.PchipInterpolator(edges, np.concatenate([[0.0], np.cumsum(share)]))
+        assert variance(table, lambda x, c=cumulative: c(x, 1), np.radians(row[0])) <= 1.02 * TOLERANCE
 
 
 def test_cells_keep_their_mass(cells):

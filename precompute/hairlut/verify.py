@@ -53,6 +53,12 @@ def verify(path: Path, model: Model | None = None) -> list[Report]:
     return reports
 
 
+def lobe_of(path: Path, model: Model | None = None) -> Lobe:
+    """The lobe that a file's header names; HairlutError where header, file name or directory contradict
+    it."""
+    return _lobe(path, exr.read(path)[0], MODELS | ({model.name: model} if model else {}))
+
+
 def _incomplete(directory: Path) -> list[Report]:
     missing = [name for name in TABLES if not (directory / f"{name}.exr").is_file()]
     return [

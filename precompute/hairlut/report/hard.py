@@ -75,7 +75,7 @@ def _between(low: float, high: float, inside: float = 0.0, outside: float = -np.
 
 
 CASES = (
-    Case("printed, |theta_r| to 90 deg: the mean 5.3 sigma outside", PRINTED.direct_theta),
+    Case("printed, theta_r to +-90 deg: the mean 5.3 sigma outside", PRINTED.direct_theta),
     Case("sigma = 1e-4", normal(0.3, 1e-4, (0.3,))),
     Case("sigma = 1e-4 at 89 deg", normal(1.5533, 1e-4, (1.5533,))),
     Case("sigma = 1e-3", normal(0.3, 1e-3)),
@@ -161,10 +161,9 @@ What this says:
   drawn: the first and last cell reach from the lobe to the ends of the domain, 15000 sigma away, because a
   direction that the table could never draw is energy that no weight restores.
 - **A valley** is what this design does worst. Two separate modes, or a gap of zero density, put a jump into
-the
-  inverse CDF at a probability where the quartic warp has its widest cells: V is 0.17 at 64 columns, 0.05 at
-  256 and 0.01 at 1024. Such a distribution is two lobes: bake them as two tables and choose between them by
-  their masses, as `hairlut_sample_mixture` does.
+  the inverse CDF at a probability where the quartic warp has its widest cells: V is 0.17 at 64 columns, 0.05
+  at 256 and 0.01 at 1024. Such a distribution is two lobes: bake them as two tables and choose between them
+  by their masses, as `hairlut_sample_mixture` does.
 - **A jump** of the density costs one badly fitting cell: V falls as 1/width, not as 1/width^4.
 - **Ends that are cut**, and means far outside, cost little until the density falls off within a few hundred
   float steps of the domain's end: the mean 40 sigma outside with sigma = 0.01 decays over 2.5e-4 rad, and

@@ -1,0 +1,63 @@
+"""Times of the C library and of its rivals, from one run of the benchmark program (tests/bench)."""
+
+import json
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+from ..errors import HairlutError
+
+REPETITIONS = 9
+LEAST_TIME = 0.04  # s, of each repetition
+
+
+@dataclass(frozen=True)
+class Times:
+    """ns: nanoseconds a sample, by the benchmark's name, the median of the repetitions; spread: (largest -
+    least) / ns."""
+
+    ns: dict[str, float]
+    spread: dict[str, float]
+    processor: str
+
+    def get(self, name: str) -> float | None:
+        return self.ns.get(name)
+
+
+def run(program: Path, luts: Path, pattern: str) -> Times:
+    """Runs the benchmarks whose names match, in one process and in random order."""
+    if not os.access(program, os.X_OK):
+        raise HairlutError(
+            f"{program}: no such program: build tests/bench with CMake, or name it with --bench"
+        )
+    command = [
+        program, "--luts", luts, f"--benchmark_filter={pattern}", "--benchmark_format=json",
+        f"--benchmark_min_time={LEAST_TIME}", f"--benchmark_repetitions={REPETITIONS}",
+        "--benchmark_enable_random_interleaving=true",
+    ]  # fmt: skip
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise HairlutError(f"{program} failed: {done.stderr.strip().splitlines()[-1:]}")
+    return _times(json.loads(done.stdout)["benchmarks"])
+
+
+def _times(entries: list[dict]) -> Times:
+    repeats: dict[str, list[float]] = {}
+    for entry in entries:
+        if entry.get("run_type", "iteration") == "iteration":
+            repeats.setdefault(entry["run_name"], []).append(entry["ns"])
+    ns = {name: median(values) for name, values in repeats.items()}
+    return Times(ns, {name: (max(v) - min(v)) / ns[name] for name, v in repeats.items()}, _processor())
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return "unknown processor"
+    return next(
+        (line.partition(":")[2].strip() for line in lines if line.startswith("model name")),
+        "unknown processor",
+    )

@@ -1,0 +1,77 @@
+"""Raw floats and npz give back the same texels, and the numbers to read them by."""
+
+import json
+
+import numpy as np
+import pytest
+
+from hairlut import exr, interpolant
+from hairlut.arrays import read_raw
+from hairlut.axis import AXIS
+from hairlut.cli import main
+from hairlut.errors import HairlutError
+from hairlut.export import TABLES, table_files
+
+
+def run(*args) -> int:
+    return main(["export", *map(str, args)])
+
+
+def test_raw_floats_and_sidecar(shipped, tmp_path):
+    table, path, _, errors = shipped
+    assert run(path, "--to", "raw", "--out", tmp_path) == 0
+    file = tmp_path / table.model / f"{table.name}.f32"
+    texels, sidecar = read_raw(file.with_suffix(".json"))
+    assert np.array_equal(texels, table.texels)
+    assert file.read_bytes() == table.texels.astype("<f4").tobytes()
+    assert sidecar["header"] == exr.attributes(table)
+    assert sidecar["errors"] == errors
+
+
+def test_sidecar_alone_reads_the_texels(shipped, tmp_path):
+    """A quartile by the sidecar's own numbers, in single precision, against the interpolant."""
+    table, path, _, _ = shipped
+    run(path, "--to", "raw", "--out", tmp_path)
+    texels, sidecar = read_raw(tmp_path / table.model / f"{table.name}.json")
+    axis = {name: np.float32(value) for name, value in sidecar["axis"].items()}
+    assert sidecar["shader"] == [0.0, *(sidecar["axis"][name] for name in AXIS)]
+    theta_r, u = np.float32(0.4), np.float32(0.25)
+    row = (theta_r - axis["row_origin"]) * axis["row_scale"]
+    column = (np.sqrt(np.sqrt(u + axis["e"])) - axis["f0"]) / axis["k"]
+    j, i = int(row), int(column)
+    t, f = row - j, column - i
+    x = (1 - t) * texels[j, i - 1 : i + 3].astype(float) + t * texels[j + 1, i - 1 : i + 3]
+    before, d, after = np.diff(x)
+    c = np.clip((before - after) / 4, -axis["limit"] * d, axis["limit"] * d)
+    angle, _ = interpolant.sample(table, [theta_r], [u])
+    assert x[1] + f * (d + c * (1 - f)) == pytest.approx(angle[0], abs=1e-5)
+
+
+def test_npz(shipped, tmp_path):
+    table, path, _, _ = shipped
+    assert run(path, "--to", "npz", "--out", tmp_path) == 0
+    with np.load(tmp_path / table.model / f"{table.name}.npz") as file:
+        assert np.array_equal(file["texels"], table.texels)
+        assert file["texels"].dtype == np.float32
+        assert np.array_equal(file["theta_r"], table.theta_r)
+        assert np.array_equal(file["u"], table.warp.u(table.width))
+        assert json.loads(str(file["sidecar"]))["header"] == exr.attributes(table)
+
+
+def test_a_directory_stands_for_its_three_tables(shipped):
+    _, path, _, _ = shipped
+    assert table_files(path.parent) == [path.parent / f"{name}.exr" for name in TABLES]
+    assert table_files(path) == [path]
+
+
+def test_refusals(shipped, tmp_path, capsys):
+    table, path, _, _ = shipped
+    assert run(tmp_path / "absent.exr", "--to", "raw", "--out", tmp_path) == 2
+    assert "absent.exr: no such file" in capsys.readouterr().err
+    assert run(path, "--to", "raw", "--out", path) == 2
+    assert "cannot be written" in capsys.readouterr().err
+    run(path, "--to", "raw", "--out", tmp_path)
+    file = tmp_path / table.model / f"{table.name}.f32"
+    file.write_bytes(file.read_bytes()[:-4])
+    with pytest.raises(HairlutError, match=r"expected width\*height"):
+        read_raw(file.with_suffix(".json"))

@@ -20,6 +20,12 @@ def spoilt(j: int, i: int, value: float) -> tables.MemoryTable:
     return table
 
 
+def narrow() -> tables.MemoryTable:
+    table = spoilt(1, 3, 0.0)
+    table.texels[1, 4] = 1e-13
+    return table
+
+
 ACCEPTED = {
     "smallest": straight(width=4, height=2),
     "odd width": straight(width=5),
@@ -60,6 +66,11 @@ REFUSED = {
     "texel infinite": (spoilt(1, 3, INF), TABLE, "row 1, columns 3 and 4"),
     "not increasing": (spoilt(2, 4, -0.5), TABLE, "row 2, columns 3 and 4"),
     "flat": (spoilt(0, 1, -HALF_PI), TABLE, "row 0, columns 0 and 1"),
+    "narrower than any": (
+        narrow(),
+        TABLE,
+        "row 1, columns 3 and 4: 0, 9.99999982e-14: expected angles that incr",
+    ),
     "first texel": (
         spoilt(1, 0, -1.5),
         TABLE,
@@ -150,6 +161,8 @@ def test_tables_from_memory_give_the_compiled_in_models_bits(name):
         part.texels[:] = np.nan  # they were copied
     random = np.random.default_rng(3)
     inputs = random.uniform(-2, 2, (2, 10_000)), random.random((2, 10_000))
+    tails = 2.0 ** -random.uniform(0, 30, (2, 5_000))  # the end cells, which the padding texels bend
+    inputs[1][:, ::2] = np.where(random.random(5_000) < 0.5, tails, 1 - tails)
     for lobe in LOBES:
         one, two = (m.sample(lobe, *inputs[0], *inputs[1]) for m in (model, builtin(name)))
         assert one.tobytes() == two.tobytes()

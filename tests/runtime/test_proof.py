@@ -88,7 +88,7 @@ def test_thread_sanitizer_finds_nothing_with_one_model_in_many_threads():
 def test_the_sanitizers_are_awake(tmp_path):
     """A program with one fault each must fail."""
     faults = {
-        "address": "#include <stdlib.h>\nint main(int n, char **v) { return 1 + *((char *)malloc(8) + 7 + n); }",
+        "address": "#include <stdlib.h>\nint main(int n, char **v) { return *((char *)malloc(8) + 7 + n); }",
         "undefined": "#include <limits.h>\nint main(int n, char **v) { return INT_MAX + n == !v; }",
     }
     for kind, text in faults.items():

@@ -118,6 +118,7 @@ def _one_draw(panel, table: Table, theta_r: float = np.radians(35.0)) -> None:
     panel.plot(np.degrees(angles), np.radians(q), color=figures.BLUE, label="density of the table")
     panel.set(
         xlabel=f"{NAMES[table.angle]} [deg]", ylabel="density [1/deg]",
-        xlim=_degrees(table.domain), ylim=(0, None), title=f"Draws at theta_r = {np.degrees(theta_r):.0f} deg",
+        xlim=_degrees(table.domain), ylim=(0, None),
+        title=f"Draws at theta_r = {np.degrees(theta_r):.0f} deg",
     )  # fmt: skip
     panel.legend(fontsize=8.5)

@@ -263,7 +263,7 @@ def spline_warp(log_slopes: Array, e: float) -> Warp:
     )
 
 
-def own_warp(lobe: Lobe, width: int, cell: Cell, e: float = 2.0**-17) -> Warp:
+def own_warp(lobe: Lobe, width: int, cell: Cell, e: float = 2.0**-17, rounds: int = 2) -> Warp:
     """The best smooth monotone warp found for this lobe alone, starting from the quartic one's slope."""
 
     def cost(log_slopes: Array) -> float:
@@ -276,7 +276,7 @@ def own_warp(lobe: Lobe, width: int, cell: Cell, e: float = 2.0**-17) -> Warp:
         return np.log(errors.relative_variance) + 3 * heavy + 2 * max(0.0, np.log(LEAST_STEPS / narrowest))
 
     slopes = -0.75 * np.log(2) * np.linspace(np.log2(e), -1, CONTROLS)
-    for _ in range(2):
+    for _ in range(rounds):
         slopes = minimize(
             cost,
             slopes,

@@ -37,6 +37,14 @@ static inline float hairlut_wrap(float phi, float low)
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 
+/* The same for phi from [low - 2 pi, low + 4 pi): at most one turn is added or taken away. */
+static inline float hairlut_wrap_once(float phi, float low)
+{
+    const float n = (float)((phi >= low + hairlut_two_pi) - (phi < low));
+    const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
+    return r >= low && r < low + hairlut_two_pi ? r : low;
+}
+
 /* cos(theta) for |theta| <= pi/2 as the sine of the angle to the pole: 2 ulp up to the pole itself, where theta's
  * rounding would turn it negative and the smallest distance of a float from pi/2 stands in. */
 static inline float hairlut_cos(float theta)

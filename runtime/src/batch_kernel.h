@@ -203,14 +203,26 @@ static inline real density(const hairlut_axis *axis, const queries *q, size_t s)
     return choose(both(at_least(x, all(axis->low)), at_least(all(axis->high), x)), pdf, all(0.0f));
 }
 
+/* phi less n turns; low where that is not in [low, low + 2 pi) */
+static inline real less_turns(real phi, real n, float low)
+{
+    const real r = sub(sub(phi, mul(n, all(hairlut_two_pi_high))), mul(n, all(hairlut_two_pi_low)));
+    return choose(both(at_least(r, all(low)), greater(all(low + hairlut_two_pi), r)), r, all(low));
+}
+
 /* hairlut_wrap */
 static inline real wrap(real phi, float low)
 {
     const real x = mul(sub(phi, all(low)), all(hairlut_inverse_two_pi));
     const real towards_zero = choose(greater(all(8388608.0f), magnitude(x)), converted(truncated(x)), x);
-    const real n = sub(towards_zero, choose(greater(towards_zero, x), all(1.0f), all(0.0f)));
-    const real r = sub(sub(phi, mul(n, all(hairlut_two_pi_high))), mul(n, all(hairlut_two_pi_low)));
-    return choose(both(at_least(r, all(low)), greater(all(low + hairlut_two_pi), r)), r, all(low));
+    return less_turns(phi, sub(towards_zero, choose(greater(towards_zero, x), all(1.0f), all(0.0f))), low);
+}
+
+/* hairlut_wrap_once */
+static inline real wrap_once(real phi, float low)
+{
+    const real above = choose(at_least(phi, all(low + hairlut_two_pi)), all(1.0f), all(0.0f));
+    return less_turns(phi, choose(greater(all(low), phi), all(-1.0f), above), low);
 }
 
 /* hairlut_cos */
@@ -254,7 +266,7 @@ static inline void sample_direct_block(const hairlut_model *model, size_t n, con
         const real relative = draw(&model->direct_phi, &phi, s, &pdf_phi);
         const real r = wrap(phi_r, -hairlut_pi);
         const real phi_i = model->azimuth == HAIRLUT_AZIMUTH_SUM ? sub(relative, r) : add(relative, r);
-        store_samples(out, s, theta_i, wrap(phi_i, -hairlut_pi), choose(valid, mul(pdf_theta, pdf_phi), all(0.0f)));
+        store_samples(out, s, theta_i, wrap_once(phi_i, -hairlut_pi), choose(valid, mul(pdf_theta, pdf_phi), all(0.0f)));
     }
 }
 
@@ -267,7 +279,7 @@ static inline void sample_multiple_block(const hairlut_model *model, size_t n, c
         const real u_phi = load(in[3] + s);
         const mask valid = known(load(in[0] + s), load(in[1] + s), load(in[2] + s), u_phi);
         const real turn = mul(all(hairlut_two_pi), clamp(u_phi, all(0.0f), all(1.0f)));
-        const real phi_i = wrap(sub(turn, all(hairlut_pi)), -hairlut_pi);
+        const real phi_i = wrap_once(sub(turn, all(hairlut_pi)), -hairlut_pi);
         real pdf;
         const real theta_i = draw(&model->multiple_theta, &theta, s, &pdf);
         store_samples(out, s, theta_i, phi_i, choose(valid, mul(pdf, all(hairlut_inverse_two_pi)), all(0.0f)));
@@ -278,7 +290,7 @@ static inline void sample_multiple_block(const hairlut_model *model, size_t n, c
 static inline real relative_azimuth(const hairlut_model *model, real phi_r, real phi_i)
 {
     const real r = wrap(phi_r, -hairlut_pi), i = wrap(phi_i, -hairlut_pi);
-    return wrap(model->azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
+    return wrap_once(model->azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
 }
 
 /* density 0 where an argument is not a number or an azimuth is infinite */

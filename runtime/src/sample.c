@@ -12,7 +12,7 @@ hairlut_sample hairlut_sample_direct(const hairlut_model *model, float theta_r, 
 hairlut_sample hairlut_sample_multiple(const hairlut_model *model, float theta_r, float phi_r, float u_theta, float u_phi)
 {
     const hairlut_draw theta = hairlut_axis_sample(&model->multiple_theta, theta_r, u_theta);
-    const float phi = hairlut_wrap(hairlut_two_pi * hairlut_clamp(u_phi, 0.0f, 1.0f) - hairlut_pi, -hairlut_pi);
+    const float phi = hairlut_wrap_once(hairlut_two_pi * hairlut_clamp(u_phi, 0.0f, 1.0f) - hairlut_pi, -hairlut_pi);
     const float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_inverse_two_pi : 0.0f;
     return hairlut_finish(theta.x, phi, pdf);
 }

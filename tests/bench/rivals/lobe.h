@@ -129,7 +129,8 @@ static inline float rival_density(float z, float width, float span)
 enum { RIVAL_ROWS = 64 };
 typedef struct rival_rows {
     float low, high;
-    float row[RIVAL_ROWS][4]; /* erf at the low end, erf's span, mean, width */
+    float row[RIVAL_ROWS][4];    /* erf at the low end, erf's span, mean, width */
+    float column[4][RIVAL_ROWS]; /* the same, as compilers can gather it */
 } rival_rows;
 
 #endif

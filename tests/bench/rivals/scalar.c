@@ -34,7 +34,7 @@ void rival_fill_rows(rival_table table, rival_rows *rows)
         const float span = erff((lobe.high - lobe.mean) / lobe.width) - start;
         const float row[4] = {start, span, lobe.mean, lobe.width};
         for (int k = 0; k < 4; ++k)
-            rows->row[j][k] = row[k];
+            rows->row[j][k] = rows->column[k][j] = row[k];
         rows->low = lobe.low;
         rows->high = lobe.high;
     }

@@ -37,21 +37,25 @@ void NAME(rival_analytic_vector, WIDTH)(rival_table table, RIVAL_ARRAYS)
     }
 }
 
+static inline float blend(const float *column, int j, float t)
+{
+    return column[j] + t * (column[j + 1] - column[j]);
+}
+
 static inline void hybrid(const rival_rows *restrict rows, size_t n, const float *restrict theta_r,
                           const float *restrict u, float *restrict x, float *restrict pdf)
 {
-    const float *flat = &rows->row[0][0];
+    const float low = rows->low, high = rows->high;
     for (size_t i = 0; i < n; ++i) {
         float r = (theta_r[i] / RIVAL_PI + 0.5f) * (RIVAL_ROWS - 1);
         r = r > 0.0f ? r : 0.0f;
         r = r < RIVAL_ROWS - 1 ? r : RIVAL_ROWS - 1;
         const int j = (int)r < RIVAL_ROWS - 2 ? (int)r : RIVAL_ROWS - 2;
         const float t = r - (float)j;
-        const float *a = flat + 4 * j;
-        const float start = a[0] + t * (a[4] - a[0]), span = a[1] + t * (a[5] - a[1]);
-        const float mean = a[2] + t * (a[6] - a[2]), width = a[3] + t * (a[7] - a[3]);
+        const float start = blend(rows->column[0], j, t), span = blend(rows->column[1], j, t);
+        const float mean = blend(rows->column[2], j, t), width = blend(rows->column[3], j, t);
         const float z = rival_erfinv(rival_inside(start + u[i] * span));
-        x[i] = rival_angle(z, mean, width, rows->low, rows->high);
+        x[i] = rival_angle(z, mean, width, low, high);
         pdf[i] = rival_density(z, width, span);
     }
 }

@@ -60,15 +60,16 @@ def ladder(limit: int) -> list[int]:
 
 
 def heights(lobe: Lobe, limit: int) -> list[int]:
-    """Heights considered, up to limit: the ladder, or those whose rows fall on the lobe's own rows if it has any."""
+    """Heights considered, up to limit: the ladder, or those whose rows fall on the lobe's own rows if it has
+    any."""
     if lobe.own_height and lobe.own_height <= limit:
         return list(range(lobe.own_height, limit + 1, lobe.own_height - 1))
     return ladder(limit)
 
 
 def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cell: Cell = CELL) -> Choice:
-    """The table of fewest texels with V <= tolerance and sides of the ladder up to limit; ToleranceError if
-    none."""
+    """The table of fewest texels with V <= tolerance and sides of the ladder up to limit, or
+    ToleranceError."""
     if not tolerance > 0:
         raise HairlutError(
             f"tolerance {tolerance!r}: expected a relative variance above 0, such as {DEFAULT_TOLERANCE:g}"

@@ -11,7 +11,7 @@ from . import figures
 from .markdown import table as markdown_table
 
 WIDTH = HEIGHT = 64
-SIDES = (16, 24, 32, 48, 64, 96, 128, 192, 256)
+SIDES = (16, 24, 32, 48, 64, 96, 128)
 HALF_SIDES = (16, 32, 64, 128)
 
 TEXT = f"""# The study behind the design

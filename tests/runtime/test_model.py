@@ -99,18 +99,18 @@ def test_unsound_tables_are_refused_with_place_and_expectation(case):
     assert result == expected
     assert text in message
     assert "expected" in message
-    with pytest.raises(LoadError, match="multiple_theta: ") as refusal:
+    with pytest.raises(LoadError, match=r"multiple_theta: ") as refusal:
         tables.create(multiple_theta=table)
     assert refusal.value.result == expected
 
 
 def test_angles_must_suit_their_table():
-    with pytest.raises(LoadError, match="direct_theta: domain .* expected to lie within -1.57") as refusal:
+    with pytest.raises(LoadError, match=r"direct_theta: domain .* expected to lie within -1.57") as refusal:
         tables.create(direct_theta=straight((0.0, TWO_PI)))
     assert refusal.value.result == ARGUMENT
-    with pytest.raises(LoadError, match="direct_phi: domain .* expected to lie within 0 to"):
+    with pytest.raises(LoadError, match=r"direct_phi: domain .* expected to lie within 0 to"):
         tables.create(direct_phi=straight())
-    with pytest.raises(LoadError, match="azimuth is 7: expected HAIRLUT_AZIMUTH_SUM"):
+    with pytest.raises(LoadError, match=r"azimuth is 7: expected HAIRLUT_AZIMUTH_SUM"):
         tables.create(azimuth=7)
 
 
@@ -191,7 +191,7 @@ def test_refusals_leave_nothing_allocated():
 
 
 def test_no_memory_is_an_error():
-    with pytest.raises(LoadError, match="the allocator returned NULL for [0-9]+ bytes") as refusal:
+    with pytest.raises(LoadError, match=r"the allocator returned NULL for [0-9]+ bytes") as refusal:
         tables.create(allocator=Allocator(fail_at=0))
     assert refusal.value.result == MEMORY
 

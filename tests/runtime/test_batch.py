@@ -17,6 +17,7 @@ CORE = (
     "builtin",
     "builtin_tables",
     "batch",
+    "batch_mixture",
     "batch_portable",
 )
 KERNELS = {
@@ -65,7 +66,11 @@ def compiled(name: str, compiler: str, *flags: str, kernels=HERE_RUN) -> Path:
 def checked(*command) -> dict[str, str]:
     """Checksum of all results, by set of kernels; fails with what differs."""
     done = subprocess.run(
-        [str(word) for word in command], check=False, text=True, capture_output=True, timeout=600
+        [str(word) for word in command],
+        check=False,
+        text=True,
+        capture_output=True,
+        timeout=600,
     )
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
     return dict(re.findall(r"^set (\w+)\nchecksum (\w+)$", done.stdout, re.MULTILINE))
@@ -149,7 +154,11 @@ def test_fused_multiply_add_is_noticed(reference):
         pytest.skip("this processor has no AVX2")
     folder = compiled("fma", tool("cc"), "-O2", "-mfma", "-ffp-contract=fast").parent
     done = subprocess.run(
-        [str(folder / "batch_check")], check=False, text=True, capture_output=True, timeout=600
+        [str(folder / "batch_check")],
+        check=False,
+        text=True,
+        capture_output=True,
+        timeout=600,
     )
     assert done.returncode == 1 or set(
         re.findall(r"checksum (\w+)", done.stdout)

@@ -595,10 +595,10 @@ function update() {
     waiting = null;
     if (what === "draw")
         clearCounts();
-    if (what === "draw" || what === "more") {
+    if (what === "draw")
         upload();
+    if (what === "draw" || what === "more")
         drawSamples();
-    }
     if (what !== "turn") {
         for (const [name, text] of Object.entries(SLIDERS))
             byId(`${name}_text`).textContent = text(state[name]).replace("-", "−");
@@ -607,6 +607,8 @@ function update() {
         tellOne();
         paintRamp();
         paintCharts();
+    }
+    if (what === "draw" || what === "paint") {
         paintTextures();
         paintErrors();
     }

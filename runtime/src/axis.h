@@ -178,13 +178,15 @@ static inline int hairlut_axis_find(const hairlut_axis *axis, const hairlut_rows
     return first + hairlut_count(row + first + 2, stride, t, x, cells - 1);
 }
 
-/* The fraction of a cell at which x lies; *slope gets dx/df there. The root of the quadratic is that slope. */
+/* The fraction of a cell at which x lies; *slope gets dx/df there. The root of the quadratic is that slope, written as the
+ * slope at the cell's flatter end and the distance from there, which cancels nothing. */
 static inline float hairlut_cell_solve(const hairlut_cell *cell, float x, float *slope)
 {
     const float d = hairlut_clamp(x - cell->x0, 0.0f, cell->d);
-    const float s = cell->d + cell->c;
-    *slope = sqrtf(hairlut_max(s * s - 4.0f * cell->c * d, 0.0f));
-    return hairlut_min(2.0f * d / (s + *slope), 1.0f);
+    const float flat = cell->d - fabsf(cell->c);
+    const float away = cell->c > 0.0f ? cell->d - d : d;
+    *slope = sqrtf(flat * flat + 4.0f * fabsf(cell->c) * away);
+    return hairlut_min(2.0f * d / (cell->d + cell->c + *slope), 1.0f);
 }
 
 static inline hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float theta_r, float u)

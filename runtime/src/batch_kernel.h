@@ -193,9 +193,10 @@ static inline real density(const hairlut_axis *axis, const queries *q, size_t s)
     istore(at, iadd(iload(q->row + s), i));
     const cells cell = load_cells(axis, at, load(q->t + s));
     const real d = clamp(sub(x, cell.x0), all(0.0f), cell.d);
-    const real sum = add(cell.d, cell.c);
-    const real slope = root(larger(sub(mul(sum, sum), mul(mul(all(4.0f), cell.c), d)), all(0.0f)));
-    const real f = smaller(over(mul(all(2.0f), d), add(sum, slope)), one);
+    const real bend = magnitude(cell.c), flat = sub(cell.d, bend);
+    const real away = choose(greater(cell.c, all(0.0f)), sub(cell.d, d), d);
+    const real slope = root(add(mul(flat, flat), mul(mul(all(4.0f), bend), away)));
+    const real f = smaller(over(mul(all(2.0f), d), add(add(cell.d, cell.c), slope)), one);
     const real low = add(converted(i), f);
     const real high = add(converted(isub(iall(axis->columns - 2), i)), sub(one, f));
     const real y = add(all(axis->f0), mul(all(axis->k), smaller(low, high)));

@@ -23,8 +23,10 @@ from hairscene.scene import Hair, scene_dict, strand_points, write_strands
 
 from hairlut import cli
 from hairlut.distribution import of_grid
+from hairlut.files import write_whole
 from hairlut.fit import Fit, fit
 from hairlut.fitfiles import write_all
+from hairlut.fitplot import plot
 
 HAIRS = {
     "brown": {},
@@ -143,8 +145,8 @@ def estimates(mi: Any, bsdf: Any, theta_r: float, draws: int, seed: int) -> np.n
     return np.stack([weight, weight * contrasted(wo)])
 
 
-def compare(mi: Any, name: str, folder: Path, draws: int) -> dict:
-    """All numbers of one hair."""
+def compare(mi: Any, name: str, folder: Path, draws: int, pictures: Path) -> dict:
+    """All numbers of one hair; its fit as pictures/fit_<name>.png."""
     strands = folder / "strands.txt"
     write_strands(strand_points(Hair(strands=STRANDS)), strands)
     nested = {"type": "hair", **HAIRS[name]}
@@ -153,6 +155,7 @@ def compare(mi: Any, name: str, folder: Path, draws: int) -> dict:
     evaluated = perf_counter()
     found = fit(of_grid(THETA_R, THETA_I, PHI, far_field(values), per_steradian=True))
     fitted = perf_counter()
+    write_whole(pictures / f"fit_{name}.png", plot(found, name))
     tables = bake(found, name, folder)
     baked = perf_counter()
     kinds = samplers(nested, tables, found.split.direct_weight)
@@ -219,7 +222,9 @@ def main() -> int:
     args = parser.parse_args()
     mi = load_engine()
     with tempfile.TemporaryDirectory() as folder:
-        report = {name: compare(mi, name, Path(folder), args.draws) for name in args.hair or HAIRS}
+        report = {
+            name: compare(mi, name, Path(folder), args.draws, args.out.parent) for name in args.hair or HAIRS
+        }
     args.out.write_text(json.dumps(report, indent=1) + "\n")
     return 0
 

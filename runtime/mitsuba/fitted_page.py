@@ -52,7 +52,7 @@ In light with a bright window and a small lamp (the light itself makes most of t
 Every mean agrees with that of the fitted tables within three standard errors of their difference, except
 those marked *. {deviations}
 
-A picture of {image}, one scattering found by BSDF sampling alone, in sky and lamps: variance of a pixel at
+A picture of {image}: one scattering found by BSDF sampling alone, in sky and lamps: variance of a pixel at
 one sample, relative to the squared mean of the image.
 
 {render}
@@ -71,11 +71,15 @@ expectation maximisation finds. It prints the relative variance of each, where G
 (peaks, skew, tails), and which one to bake. For all four hairs it says (b): the Gaussian's tails end where
 this BSDF's do not, and a few enormous weights follow.
 
+![brown hair, data and fits](fit_brown.png)
+
+![blond hair, data and fits](fit_blond.png)
+
 ## Cut or wrapped
 
 The built-in azimuth lobe is a Gaussian cut to one period; `precompute/examples/wrapped_azimuth.py` wraps it
-around the circle. They differ where the lobe is broad: beyond 60 degrees. The table of the wrapped lobe is
-as small, and its density has no step at phi = 0.
+around the circle. They differ where the lobe is broad: beyond 60 degrees. The wrapped density has no step
+at phi = 0.
 
 ![cut and wrapped azimuth](fit_wrapped.png)
 """
@@ -84,11 +88,14 @@ LIMITS = """| hair | these tables | plain marginals | a model for each of 16 off
 |---|---|---|---|
 {rows}
 
-The first two columns are against the averaged BSDF: what two tables and a mixture weight lose is {lost}. The rest
-of V above comes from the offset: at one offset this BSDF's highlights are narrow in azimuth and stand elsewhere
-than at the next, and the tables, which have no axis for it, spread over all of them. A model for each offset
-(the last column, by calculation) would take most of that away; which model to draw from is the caller's choice,
-as the mixture weight is."""
+The first two columns are against the averaged BSDF: two tables and a mixture weight lose {lost}. The rest
+of V above comes from the offset: at one offset this BSDF's highlights are narrow in azimuth and stand
+elsewhere than at the next, and the tables, which have no axis for it, spread over all of them. A model for
+each offset (the last column, by calculation) would take most of that away; which model to draw from would
+be the caller's choice, as the mixture weight is. What then remains is mostly that the light itself differs
+between offsets, which the BSDF's own sampler keeps too. So the answer to "as well as the sampler that its
+authors derived by hand" is: yes for the rough hair, where offsets blur; not for the others without a model
+for each offset, or half of the draws from the BSDF's own sampler."""
 
 
 def table(report: dict, light: str) -> str:

@@ -92,10 +92,11 @@ The first two columns are against the averaged BSDF: two tables and a mixture we
 of V above comes from the offset: at one offset this BSDF's highlights are narrow in azimuth and stand
 elsewhere than at the next, and the tables, which have no axis for it, spread over all of them. A model for
 each offset (the last column, by calculation) would take most of that away; which model to draw from would
-be the caller's choice, as the mixture weight is. What then remains is mostly that the light itself differs
-between offsets, which the BSDF's own sampler keeps too. So the answer to "as well as the sampler that its
-authors derived by hand" is: yes for the rough hair, where offsets blur; not for the others without a model
-for each offset, or half of the draws from the BSDF's own sampler."""
+be the caller's choice, as the mixture weight is. What then remains is in part that the light itself differs
+between offsets, which the BSDF's own sampler keeps too: nearly all of it for black hair, a third for brown.
+So the answer to "as well as the sampler that its authors derived by hand" is: yes for the rough hair, where
+offsets blur; not for the others without a model for each offset, or half of the draws from the BSDF's own
+sampler."""
 
 
 def table(report: dict, light: str) -> str:

@@ -6,8 +6,9 @@ HAIRLUT := $(BIN)/hairlut
 BUILD := build
 MODELS := luts/printed luts/fitted
 LIBRARY := $(BUILD)/runtime
+BENCH := $(BUILD)/bench/hairlut_bench
 
-.PHONY: all help setup extras bake build demo test lint bench report render fuzz clean
+.PHONY: all help setup extras bake build demo test lint bench report plugin render fuzz clean
 
 all: demo
 
@@ -17,6 +18,7 @@ help:
 	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
 	@echo "make bench    time the C library and its rivals, as ratios"
 	@echo "make report   regenerate luts/report/: speed against error, hard cases, the study"
+	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
 	@echo "make render   render the hair scene with the Mitsuba plugin (about 10 minutes)"
 	@echo "make fuzz     60 seconds of coverage-guided fuzzing of the loader and the memory path"
 	@echo "make clean    remove $(VENV) and $(BUILD)/"
@@ -52,6 +54,22 @@ lint: setup
 
 test: lint build
 	$(BIN)/python -m pytest
+
+bench: build
+	$(BIN)/python tests/bench/run.py
+
+report: build
+	@test -x $(BENCH) || $(BIN)/python tests/bench/run.py --filter '^none$$'
+	$(HAIRLUT) report --bench $(BENCH)
+
+plugin: setup
+	@cd runtime/mitsuba && $(BIN)/python -m hairscene.plugin
+
+render: setup
+	$(BIN)/python runtime/mitsuba/render.py
+
+fuzz: setup
+	tests/fuzz/fuzz.sh 60
 
 clean:
 	rm -rf $(VENV) $(BUILD)

@@ -36,8 +36,8 @@ class Lobe:
     breakpoints     where the density jumps, or has a spike narrower than 1/2000 of the domain; where these
                     places move with theta_r (R,), a function that returns them as (R, B)
     moments         (mean, sigma) at theta_r if the lobe is a Gaussian; for the closed form, not for the bake
-    own_height      for a lobe given as rows, the fewest rows of a table that include them: between its rows such
-                    a lobe bends, and only these tables bend with it
+    own_height      for a lobe given as rows, the fewest rows of a table that include them: between its rows
+                    such a lobe bends, and only these tables bend with it
     """
 
     model: str

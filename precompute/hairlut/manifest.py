@@ -46,6 +46,19 @@ def record(folder: Path, inputs: Iterable[Path], textures: Iterable[Path], optio
     write_whole(folder / NAME, f"{json.dumps(manifest, indent=1)}\n".encode())
 
 
+def source(folder: Path) -> Path | None:
+    """The model file that the manifest in folder names, if it is there and holds only data.
+
+    To load a Python file because a manifest says so would run whatever stands in it.
+    """
+    try:
+        first = next(iter(json.loads((folder / NAME).read_text())["inputs"]))
+        path = folder / first
+        return path if path.suffix in (".toml", ".npz") and path.is_file() else None
+    except (OSError, ValueError, KeyError, AttributeError, TypeError, StopIteration):
+        return None
+
+
 def _relative(path: Path, folder: Path) -> str:
     return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
 

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from . import exr
+from . import exr, manifest
 from .errors import HairlutError
 from .export import TABLES
 from .lobes import MODELS, Array, Lobe, Model
 from .measure import BETWEEN, Errors, Exact, inclinations, measure
+from .modelfile import load
 from .table import Table
 
 STEPS = 1.0  # of a float by which a texel may miss the quantile
@@ -39,13 +40,19 @@ class Report:
 
 
 def verify(path: Path, model: Model | None = None) -> list[Report]:
-    """Reports on a file, or on every .exr file below a directory. model: where the header names no built-in
-    one."""
+    """Reports on a file, or on every .exr file below a directory.
+
+    model: where the header names no built-in one. It is found if the directory's manifest names its file,
+    and that is TOML or npz.
+    """
     path = Path(path)
     files = sorted(path.rglob("*.exr")) if path.is_dir() else [path]
     if not files:
         raise HairlutError(f"{path}: no .exr file in this directory: expected <model>/<table>.exr")
-    models = MODELS | ({model.name: model} if model else {})
+    beside = filter(None, map(manifest.source, {file.parent for file in files}))
+    models = (
+        MODELS | {found.name: found for found in map(load, beside)} | ({model.name: model} if model else {})
+    )
     reports = [verify_file(file, models) for file in files]
     if path.is_dir():
         for directory in sorted({file.parent for file in files}):

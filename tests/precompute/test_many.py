@@ -133,3 +133,12 @@ def test_a_manifest_names_no_place_on_this_machine(baked):
     inputs = json.loads((folder / manifest.NAME).read_text())["inputs"]
     assert set(inputs) == {"../../hair.py", "../../width.txt"}
     assert not any(Path(name).is_absolute() for name in inputs)
+
+
+def test_a_manifest_leads_to_a_model_of_numbers_but_never_runs_code(baked, luts):
+    _, _, folder = baked
+    assert manifest.source(folder) is None
+    found = manifest.source(luts / "measured")
+    assert found is not None
+    assert found.name == "measured.toml"
+    assert manifest.source(folder.parent) is None

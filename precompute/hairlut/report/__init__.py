@@ -13,7 +13,8 @@ INDEX = """# Report
 its rivals | | [Hard cases](hard_cases.md) | narrow, cut, split, flat and broken densities: what works with
 which error, what is refused | | [The study](study.md) | why this warp, these cells, these ends: every
 alternative on the same measure | | [In a renderer](render.md) | variance and bias of a rendered lock of hair
-| | [Shaders](shaders.md) | the same tables on the GPU's side, checked against C | | [Explorer](explorer.html)
+| | [A scene's own hair](fit.md) | tables fitted to a hair BSDF, beside that BSDF's own sampler |
+| [Shaders](shaders.md) | the same tables on the GPU's side, checked against C | | [Explorer](explorer.html)
 | the lobes to play with, in a browser |
 
 `make report` writes the first three again, `hairlut plot luts` draws each table.

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-EXPOSURE = 2.2
+EXPOSURE = 2.5
 WHITE = 100.0  # cd/m2 of a picture's white
 
 

@@ -16,8 +16,8 @@ Array = NDArray[np.float64]
 
 CONTROL_POINTS = 9
 
-# Mitsuba 3.9 reads past its list of segments where a ray hits the very tip of the last strand (a position along
-# all strands that rounds to 1). A last strand too small and too far away to be hit keeps renders from crashing.
+# Mitsuba 3.9 reads past its list of segments where a ray hits the very tip of the last strand (a position
+# along all that rounds to 1). A last one, too small and too far away to be hit, keeps renders from crashing.
 UNREACHED = "\n".join(f"0 {-4.0 + 1e-4 * k:g} -4 1e-6" for k in range(4))
 
 
@@ -79,7 +79,7 @@ def write_strands(points: Array, path: Path) -> None:
 
 
 def environment_pixels(lamps: bool = True, width: int = 128) -> NDArray[np.float32]:
-    """Radiance (width/2, width, 3): dim sky over a dark floor; with `lamps` a window and a lamp."""
+    """Radiance (width/2, width, 3): dim sky over a dark floor; with `lamps` a window behind and a lamp."""
     height = width // 2
     up = np.cos(np.pi * (np.arange(height) + 0.5) / height)[:, None, None]
     azimuth = (2.0 * np.pi * (np.arange(width) + 0.5) / width)[None, :, None]
@@ -88,7 +88,8 @@ def environment_pixels(lamps: bool = True, width: int = 128) -> NDArray[np.float
     if not lamps:
         return pixels
     elevation = np.arcsin(up)
-    window = (np.abs(azimuth - np.pi) < 0.45) & (np.abs(elevation - 0.45) < 0.3)
+    # azimuth 0 lies behind the hair as the camera sees it, pi / 2 to the right
+    window = (np.cos(azimuth + 0.3) > np.cos(0.45)) & (np.abs(elevation - 0.6) < 0.3)
     lamp = (np.abs(azimuth - 0.42 * np.pi) < 0.22) & (np.abs(elevation - 0.35) < 0.2)
     pixels += np.where(window, np.array([9.0, 10.0, 11.0]), 0.0) + np.where(
         lamp, np.array([26.0, 21.0, 15.0]), 0.0
@@ -138,7 +139,7 @@ def scene_dict(
     if lamps:
         description["area_light"] = {
             "type": "rectangle",
-            "to_world": transform.look_at(origin=[-2.4, 2.2, 1.2], target=[0, 0, 0], up=[0, 1, 0]).scale(0.5),
-            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [12.0, 11.0, 9.5]}},
+            "to_world": transform.look_at(origin=[-1.8, 1.8, 3.0], target=[0, 0, 0], up=[0, 1, 0]).scale(0.5),
+            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [45.0, 41.0, 35.0]}},
         }
     return description

@@ -214,6 +214,7 @@ static inline float hairlut_axis_pdf(const hairlut_axis *axis, float theta_r, fl
 
 static inline float hairlut_axis_invert(const hairlut_axis *axis, float theta_r, float x)
 {
+    x = hairlut_clamp(x, axis->low, axis->high); /* the search is for what a row holds, not for infinity */
     const hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
     const int i = hairlut_axis_find(axis, &rows, x);
     const hairlut_cell cell = hairlut_axis_cell(axis, &rows, i);

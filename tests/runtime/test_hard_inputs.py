@@ -116,3 +116,9 @@ def test_solid_angle_density_is_finite_at_the_pole():
         cosine = max(np.cos(float(theta)), 4.3e-8)
         assert convert(1.0, float(theta)) == pytest.approx(1 / cosine, rel=0.02)
     assert convert(0.0, float(HALF_PI)) == 0
+
+
+def test_directions_beyond_the_domain_invert_to_its_nearer_end(model, lobe):
+    for beyond in (BEYOND, 10.0, np.finfo(np.float32).max, np.inf):
+        assert model.invert(lobe, 0.3, 0.5, beyond, 0.25)[0] == 1
+        assert model.invert(lobe, 0.3, 0.5, -beyond, 0.25)[0] == 0

@@ -239,7 +239,7 @@ def warps(width: int, height: int) -> Iterator[Result]:
                 yield replace(result(name, tabulate_any(lobe, width, height, warp, cell), lobe), e=e)
 
 
-# ---- the bound: a warp of its own for each lobe
+# ---- a warp of its own for each lobe
 # ---------------------------------------------------------------
 
 CONTROLS = 7
@@ -296,9 +296,7 @@ def bounds(width: int, height: int) -> Iterator[Result]:
     for cell in CELLS:
         for lobe in LOBES:
             warp = own_warp(lobe, width, cell)
-            yield result(
-                "optimised for each lobe (bound)", tabulate_any(lobe, width, height, warp, cell), lobe
-            )
+            yield result("optimised for each lobe", tabulate_any(lobe, width, height, warp, cell), lobe)
 
 
 # ---- ends, rows, sizes

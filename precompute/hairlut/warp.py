@@ -6,13 +6,13 @@ dense near the ends, where a quantile function is steep, and with a slope that s
 themselves.
 
 Why this one (luts/report/study.md has every alternative on the same measure). A renderer pays for a table's
-relative variance V. With linear cells no warp brings V of theta of the direct lobe below 6e-4 at 64x64, not
-even one optimised for that lobe alone; with curved cells (interpolant.py) every smooth warp with dense ends
-does, and two square roots are the cheapest of them: 2e-5, where logit and probit cost a logarithm and an
-exponential a sample for 5e-6, which nobody can see. The outermost knots are the domain's ends, not a far
-quantile: a renderer's BSDF is not the lobe, and a direction that the table never draws is energy that no
-weight restores. With curved end cells that support is nearly free. e is a power of two that size.py measures
-for each table.
+relative variance V. With linear cells no warp that was tried brings V of theta of the direct lobe below 5e-4
+at 64x64, nor did optimising one for that lobe alone; with curved cells (interpolant.py) every smooth warp
+with dense ends does, and two square roots are the cheapest of them: 2e-5, where logit and probit cost a
+logarithm and an exponential a sample for 5e-6, which nobody can see. The outermost knots are the domain's
+ends, not a far quantile: a renderer's BSDF is not the lobe, and a direction that the table never draws is
+energy that no weight restores. With curved end cells that support is nearly free. e is a power of two that
+size.py measures for each table.
 """
 
 from dataclasses import dataclass

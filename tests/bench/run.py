@@ -1,4 +1,4 @@
-"""`make bench`: bakes tables of 64x64 and 256x256, builds hairlut_bench, runs it once, and prints ratios of speed."""
+"""`make bench`: bakes tables of 64x64 and 256x256, builds hairlut_bench, runs it once, prints ratios of speed."""
 
 import argparse
 import os
@@ -64,16 +64,10 @@ def main() -> None:
         type=Path,
         help="directory of model directories; default: baked for the benchmark",
     )
-    parser.add_argument(
-        "--filter", default=".", metavar="REGEX", help="which benchmarks to run"
-    )
+    parser.add_argument("--filter", default=".", metavar="REGEX", help="which benchmarks to run")
     parser.add_argument("--repetitions", type=int, default=9)
-    parser.add_argument(
-        "--seconds", type=float, default=0.02, help="least time of each repeat"
-    )
-    parser.add_argument(
-        "--json", type=Path, default=BUILD / "results.json", metavar="FILE"
-    )
+    parser.add_argument("--seconds", type=float, default=0.02, help="least time of each repeat")
+    parser.add_argument("--json", type=Path, default=BUILD / "results.json", metavar="FILE")
     args = parser.parse_args()
     program = build()
     if not args.luts:

@@ -20,9 +20,7 @@ def read(path: Path) -> dict[str, list[float]]:
     times = defaultdict(list)
     for run in json.loads(path.read_text())["benchmarks"]:
         if run.get("run_type") == "iteration" and not run.get("error_occurred"):
-            times[run.get("run_name", run["name"]).split("/repeats")[0]].append(
-                run["ns"]
-            )
+            times[run.get("run_name", run["name"]).split("/repeats")[0]].append(run["ns"])
     return dict(times)
 
 
@@ -39,9 +37,7 @@ class Ratio:
 
 
 def models(times: dict[str, list[float]]) -> list[str]:
-    return sorted(
-        {name.split("/")[2] for name in times if name.startswith("sample/scalar/")}
-    )
+    return sorted({name.split("/")[2] for name in times if name.startswith("sample/scalar/")})
 
 
 def reading(model: str) -> str:
@@ -49,9 +45,7 @@ def reading(model: str) -> str:
     return "printed" if model.startswith("printed") else "fitted"
 
 
-def fastest(
-    times: dict[str, list[float]], prefix: str, suffix: str
-) -> list[float] | None:
+def fastest(times: dict[str, list[float]], prefix: str, suffix: str) -> list[float] | None:
     """The rival's fastest form."""
     found = [times[n] for n in times if n.startswith(prefix) and n.endswith(suffix)]
     return min(found, key=statistics.median, default=None)
@@ -159,9 +153,7 @@ def report(times: dict[str, list[float]]) -> str:
             rows: dict[str, list[str]] = {}
             for name in names:
                 for what, slow, fast in of(times, model, name):
-                    rows.setdefault(what, []).append(
-                        str(Ratio(slow, fast)) if slow and fast else "not timed"
-                    )
+                    rows.setdefault(what, []).append(str(Ratio(slow, fast)) if slow and fast else "not timed")
             lines += table(f"{model}, by {kind}", list(names), rows)
         rows = {}
         for how in (

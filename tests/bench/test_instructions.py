@@ -1,4 +1,4 @@
-"""Instructions a sample, counted by callgrind: the guard against getting slower that no busy machine disturbs.
+"""Instructions a sample, counted by callgrind: the guard against getting slower, on busy machines too.
 
 Valgrind runs no AVX-512, so the functions over arrays are counted on their AVX2 kernels. The pinned numbers
 are those of gcc 12 -O2; other compilers are held to the same within the tolerance.
@@ -34,9 +34,7 @@ def program():
     folder = BUILD / "tests" / "instructions"
     folder.mkdir(parents=True, exist_ok=True)
     kernels = {"batch_avx2": ["-mavx2", "-mbmi2", "-mpopcnt"]}
-    kernels["batch_avx512"] = [
-        f"-mavx512{part}" for part in ("f", "bw", "dq", "vl")
-    ] + kernels["batch_avx2"]
+    kernels["batch_avx512"] = [f"-mavx512{part}" for part in ("f", "bw", "dq", "vl")] + kernels["batch_avx2"]
     names = [
         "sample",
         "mixture",
@@ -104,9 +102,7 @@ def instructions(program, what: str) -> float:
 def test_instructions_a_sample(program, what):
     counted = instructions(program, what)
     pinned = PINNED[what]
-    assert counted < (1 + TOLERANCE) * pinned, (
-        f"{what}: {counted:.1f} instructions, pinned {pinned}"
-    )
+    assert counted < (1 + TOLERANCE) * pinned, f"{what}: {counted:.1f} instructions, pinned {pinned}"
     assert counted > (1 - 2 * TOLERANCE) * pinned, (
         f"{what}: {counted:.1f} instructions: pin that instead of {pinned}"
     )

@@ -1,4 +1,4 @@
-"""The batch kernels give the bits of the one-direction functions, on every instruction set that can be run here."""
+"""The batch kernels give the bits of the one-direction functions, on every instruction set run here."""
 
 import platform
 import re
@@ -32,9 +32,7 @@ KERNELS = {
     ],
     "neon": [],
 }
-HERE_RUN = (
-    ("neon",) if platform.machine() in ("aarch64", "arm64") else ("avx2", "avx512")
-)
+HERE_RUN = ("neon",) if platform.machine() in ("aarch64", "arm64") else ("avx2", "avx512")
 INCLUDE = [f"-I{RUNTIME / 'include'}", f"-I{SOURCE}"]
 # the library's flags: no fused multiply-add, no errno
 COMMON = [
@@ -105,14 +103,10 @@ def test_widest_set_of_this_processor_is_offered(reference):
     if "avx2" not in flags:
         pytest.skip("this processor has no AVX2: its kernels are not run")
     assert "avx2" in reference
-    assert ("avx512" in reference) == all(
-        f"avx512{part}" in flags for part in ("f", "bw", "dq", "vl")
-    )
+    assert ("avx512" in reference) == all(f"avx512{part}" in flags for part in ("f", "bw", "dq", "vl"))
 
 
-@pytest.mark.parametrize(
-    "flags", [["-O3"], ["-O2", "-DHAIRLUT_PLAIN_QUAD"], ["-O0"]], ids=" ".join
-)
+@pytest.mark.parametrize("flags", [["-O3"], ["-O2", "-DHAIRLUT_PLAIN_QUAD"], ["-O0"]], ids=" ".join)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_bits_do_not_depend_on_the_compiler(reference, compiler, flags):
     if not tool(compiler):
@@ -139,9 +133,7 @@ def test_neon_equals_the_other_processors_bit_for_bit(reference):
         tool("qemu-aarch64") or tool("qemu-aarch64-static"),
     )
     if not compiler or not emulator:
-        pytest.skip(
-            "NEON is not run: apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
-        )
+        pytest.skip("NEON is not run: apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user")
     program = compiled("aarch64", compiler, "-O2", "-static", kernels=("neon",))
     results = checked(emulator, program)
     assert "neon" in results
@@ -160,6 +152,4 @@ def test_fused_multiply_add_is_noticed(reference):
         capture_output=True,
         timeout=600,
     )
-    assert done.returncode == 1 or set(
-        re.findall(r"checksum (\w+)", done.stdout)
-    ) != set(reference.values())
+    assert done.returncode == 1 or set(re.findall(r"checksum (\w+)", done.stdout)) != set(reference.values())

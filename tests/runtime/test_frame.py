@@ -11,9 +11,7 @@ POINTER = ctypes.POINTER(ctypes.c_float)
 
 
 class Frame(ctypes.Structure):
-    _fields_ = [
-        (name, ctypes.c_float * 3) for name in ("tangent", "normal", "binormal")
-    ]
+    _fields_ = [(name, ctypes.c_float * 3) for name in ("tangent", "normal", "binormal")]
 
 
 def frame(matrix) -> Frame:
@@ -24,9 +22,7 @@ def frame(matrix) -> Frame:
 def angles(matrix, direction) -> tuple[float, float]:
     theta, phi = ctypes.c_float(), ctypes.c_float()
     w = (ctypes.c_float * 3)(*map(float, direction))
-    core().hairlut_angles(
-        ctypes.byref(frame(matrix)), w, ctypes.byref(theta), ctypes.byref(phi)
-    )
+    core().hairlut_angles(ctypes.byref(frame(matrix)), w, ctypes.byref(theta), ctypes.byref(phi))
     return theta.value, phi.value
 
 
@@ -72,9 +68,7 @@ def test_axes_have_the_angles_of_their_definition():
     assert angles(TILTED, normal) == pytest.approx((0, 0), abs=1e-6)
     assert angles(TILTED, binormal) == pytest.approx((0, np.pi / 2), abs=1e-6)
     assert angles(TILTED, -binormal) == pytest.approx((0, -np.pi / 2), abs=1e-6)
-    leaning = np.sin(0.3) * tangent + np.cos(0.3) * (
-        np.cos(2) * normal + np.sin(2) * binormal
-    )
+    leaning = np.sin(0.3) * tangent + np.cos(0.3) * (np.cos(2) * normal + np.sin(2) * binormal)
     assert angles(TILTED, leaning) == pytest.approx((0.3, 2), abs=1e-6)
 
 
@@ -101,18 +95,10 @@ def test_there_and_back():
 def test_pole(sign):
     exact = np.eye(3)
     assert angles(exact, sign * exact[0]) == (sign * HALF_PI, 0.0)
-    assert direction(TILTED, sign * HALF_PI, 2.0) == pytest.approx(
-        sign * TILTED[0], abs=1e-6
-    )
-    assert angles(exact, direction(exact, sign * HALF_PI, 2.0))[1] == pytest.approx(
-        2.0, abs=1e-5
-    )
-    near = direction(
-        exact, sign * (np.pi / 2 - 1e-5), 1.0
-    )  # asin of the dot product would be off by 3e-4
-    assert angles(exact, near) == pytest.approx(
-        (sign * (np.pi / 2 - 1e-5), 1.0), abs=2e-7
-    )
+    assert direction(TILTED, sign * HALF_PI, 2.0) == pytest.approx(sign * TILTED[0], abs=1e-6)
+    assert angles(exact, direction(exact, sign * HALF_PI, 2.0))[1] == pytest.approx(2.0, abs=1e-5)
+    near = direction(exact, sign * (np.pi / 2 - 1e-5), 1.0)  # asin of the dot product would be off by 3e-4
+    assert angles(exact, near) == pytest.approx((sign * (np.pi / 2 - 1e-5), 1.0), abs=2e-7)
 
 
 @pytest.mark.parametrize("length", [1e-30, 1e-3, 1.0, 7.0, 1e30])
@@ -159,21 +145,15 @@ def test_tilting_the_fibre_is_not_tilting_the_sample():
 
     def along(degrees):
         a = np.radians(degrees)
-        matrix = np.array(
-            [[np.cos(a), np.sin(a), 0], [-np.sin(a), np.cos(a), 0], [0, 0, 1]]
-        )
+        matrix = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(a), np.cos(a), 0], [0, 0, 1]])
         theta_r, phi_r = angles(matrix, viewer)
         assert np.degrees(theta_r) == pytest.approx(degrees, abs=1e-3)
         s = model.sample("direct", theta_r, phi_r, np.float32(0.5), np.float32(0.5))[0]
         return direction(matrix, s["theta_i"], 0.0)  # the plane of fibre and viewer
 
-    turned = np.degrees(
-        np.arctan2(along(20)[0], along(20)[1]) - np.arctan2(along(0)[0], along(0)[1])
-    )
+    turned = np.degrees(np.arctan2(along(20)[0], along(20)[1]) - np.arctan2(along(0)[0], along(0)[1]))
     # theta_i = (3 theta_r - 2) degrees - theta_r: the mirror direction would turn by -40 degrees
-    assert turned == pytest.approx(
-        -40 + np.degrees(np.radians(3 * np.radians(20))), abs=0.6
-    )
+    assert turned == pytest.approx(-40 + np.degrees(np.radians(3 * np.radians(20))), abs=0.6)
 
 
 def test_mirrored_frame_mirrors_the_azimuth():

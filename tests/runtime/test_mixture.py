@@ -9,10 +9,11 @@ import ctypes
 
 import numpy as np
 import pytest
-from hairlut import analytic, lobes
-from hairlut.warp import Warp
 from runtime.c_library import LOBES, Model, core
 from runtime.tables import DIFFERENCE, SUM, MemoryTable, create
+
+from hairlut import analytic, lobes
+from hairlut.warp import Warp
 
 N = 10_000_000
 CHUNK = 500_000
@@ -27,37 +28,24 @@ def pointers(*arrays):
 
 
 class Samples(ctypes.Structure):
-    _fields_ = [
-        (name, POINTER) for name in ("theta_i", "phi_i", "pdf_angle", "pdf_solid_angle")
-    ]
+    _fields_ = [(name, POINTER) for name in ("theta_i", "phi_i", "pdf_angle", "pdf_solid_angle")]
 
 
 def filled(n: int, value: float) -> np.ndarray:
     return np.full(n, value, np.float32)
 
 
-def sample_mixture(
-    model: Model, weight, theta_r, phi_r, u_lobe, u_theta, u_phi
-) -> list[np.ndarray]:
+def sample_mixture(model: Model, weight, theta_r, phi_r, u_lobe, u_theta, u_phi) -> list[np.ndarray]:
     """[theta_i, phi_i, pdf_angle, pdf_solid_angle] of arrays of one length."""
-    inputs = [
-        np.ascontiguousarray(a, np.float32)
-        for a in (weight, theta_r, phi_r, u_lobe, u_theta, u_phi)
-    ]
+    inputs = [np.ascontiguousarray(a, np.float32) for a in (weight, theta_r, phi_r, u_lobe, u_theta, u_phi)]
     out = [np.empty_like(inputs[0]) for _ in range(4)]
     n = ctypes.c_size_t(inputs[0].size)
-    core().hairlut_sample_mixture_n(
-        model.pointer, n, *pointers(*inputs), Samples(*pointers(*out))
-    )
+    core().hairlut_sample_mixture_n(model.pointer, n, *pointers(*inputs), Samples(*pointers(*out)))
     return out
 
 
-def sample_lobe(
-    model: Model, lobe: str, theta_r, phi_r, u_theta, u_phi
-) -> list[np.ndarray]:
-    inputs = [
-        np.ascontiguousarray(a, np.float32) for a in (theta_r, phi_r, u_theta, u_phi)
-    ]
+def sample_lobe(model: Model, lobe: str, theta_r, phi_r, u_theta, u_phi) -> list[np.ndarray]:
+    inputs = [np.ascontiguousarray(a, np.float32) for a in (theta_r, phi_r, u_theta, u_phi)]
     out = [np.empty_like(inputs[0]) for _ in range(4)]
     function = getattr(core(), f"hairlut_sample_{lobe}_n")
     function(
@@ -84,32 +72,21 @@ def pdf_n(model: Model, name: str, *arrays) -> np.ndarray:
 def radiance(theta, phi) -> np.ndarray:
     """Light from (theta, phi): brightest from one side and one end of the fibre, with a second harmonic."""
     across = np.cos(theta)
-    return (
-        1
-        + 0.7 * across * np.cos(phi - 0.9)
-        + 0.5 * np.sin(theta)
-        + 0.3 * across**2 * np.sin(2 * phi)
-    )
+    return 1 + 0.7 * across * np.cos(phi - 0.9) + 0.5 * np.sin(theta) + 0.3 * across**2 * np.sin(2 * phi)
 
 
-def exact_density(
-    name: str, lobe: str, theta_r: float, phi_r: float, theta, phi
-) -> np.ndarray:
+def exact_density(name: str, lobe: str, theta_r: float, phi_r: float, theta, phi) -> np.ndarray:
     """The lobe that the tables stand for, per rad^2."""
     model = lobes.find_model(name)
     if lobe == "multiple":
         return analytic.density(model.multiple_theta, theta_r, theta) / (2 * np.pi)
-    relative = (phi + phi_r if model.direct_phi.azimuth == "sum" else phi - phi_r) % (
-        2 * np.pi
-    )
+    relative = (phi + phi_r if model.direct_phi.azimuth == "sum" else phi - phi_r) % (2 * np.pi)
     return analytic.density(model.direct_theta, theta_r, theta) * analytic.density(
         model.direct_phi, theta_r, relative
     )
 
 
-def scattering(
-    name: str, lobe: str, theta_r: float, phi_r: float, theta, phi
-) -> np.ndarray:
+def scattering(name: str, lobe: str, theta_r: float, phi_r: float, theta, phi) -> np.ndarray:
     """What is gathered, per steradian: BSDF times cosine, in the shape of the lobe or of their mixture."""
     if lobe == "mixture":
         density = WEIGHT * exact_density(name, "direct", theta_r, phi_r, theta, phi) + (
@@ -128,30 +105,22 @@ def reference(name: str, lobe: str, theta_r: float, phi_r: float) -> float:
     def panels(ends):
         half = 0.5 * np.diff(ends)
         mid = 0.5 * (ends[1:] + ends[:-1])
-        return (mid[:, None] + half[:, None] * nodes).ravel(), (
-            half[:, None] * weights
-        ).ravel()
+        return (mid[:, None] + half[:, None] * nodes).ravel(), (half[:, None] * weights).ravel()
 
     theta, w_theta = panels(np.linspace(-np.pi / 2, np.pi / 2, 41))
     start = -phi_r if lobes.find_model(name).direct_phi.azimuth == "sum" else phi_r
     phi, w_phi = panels(np.linspace(start, start + 2 * np.pi, 41))
-    values = scattering(name, lobe, theta_r, phi_r, theta[:, None], phi) * radiance(
-        theta[:, None], phi
-    )
+    values = scattering(name, lobe, theta_r, phi_r, theta[:, None], phi) * radiance(theta[:, None], phi)
     return float((w_theta * np.cos(theta)) @ values @ w_phi)
 
 
 def directions(samples) -> tuple[np.ndarray, np.ndarray]:
     """(theta_i, phi_i) in double; the float next to pi/2 lies above it, outside the exact lobe's domain."""
-    return np.clip(samples[0].astype(float), -np.pi / 2, np.pi / 2), samples[1].astype(
-        float
-    )
+    return np.clip(samples[0].astype(float), -np.pi / 2, np.pi / 2), samples[1].astype(float)
 
 
-def estimate(
-    model: Model, lobe: str, theta_r: float, phi_r: float, density, n=N
-) -> tuple[float, float]:
-    """(mean, standard error) of scattering * radiance / density over n samples; density(samples) per steradian."""
+def estimate(model: Model, lobe: str, theta_r: float, phi_r: float, density, n=N) -> tuple[float, float]:
+    """(mean, standard error) of scattering * radiance / density over n samples; density is per steradian."""
     random = np.random.Generator(np.random.SFC64(20250101))
     total = squares = 0.0
     for _ in range(n // CHUNK):
@@ -163,9 +132,7 @@ def estimate(
             samples = sample_lobe(model, lobe, *viewer, u[0], u[1])
         theta, phi = directions(samples)
         # the same factor 1/cos(theta) stands in both: taken from the library, so that float's pole cancels
-        per_angle = scattering(model.name, lobe, theta_r, phi_r, theta, phi) * np.cos(
-            theta
-        )
+        per_angle = scattering(model.name, lobe, theta_r, phi_r, theta, phi) * np.cos(theta)
         jacobian = samples[3].astype(float) / samples[2]
         value = per_angle * jacobian * radiance(theta, phi) / density(samples)
         total += value.sum()
@@ -180,9 +147,7 @@ def test_light_is_gathered_without_bias(model, lobe, viewer):
     mean, error = estimate(model, lobe, *viewer, density=lambda s: s[3].astype(float))
     expected = reference(model.name, lobe, *viewer)
     assert error < 3e-4 * expected
-    assert abs(mean - expected) < SIGMAS * error, (
-        f"{mean} {expected}: {(mean - expected) / error:.2f} errors"
-    )
+    assert abs(mean - expected) < SIGMAS * error, f"{mean} {expected}: {(mean - expected) / error:.2f} errors"
 
 
 WRONG = {
@@ -193,9 +158,7 @@ WRONG = {
         pdf_n(model, "mixture", 0.61, *v, s[0], s[1]).astype(float) * s[3] / s[2]
     ),
     "azimuth of the other reading": lambda model, v, s: (
-        pdf_n(model, "mixture", WEIGHT, v[0], -v[1], s[0], s[1]).astype(float)
-        * s[3]
-        / s[2]
+        pdf_n(model, "mixture", WEIGHT, v[0], -v[1], s[0], s[1]).astype(float) * s[3] / s[2]
     ),
     "one cosine too many": lambda model, v, s: s[2].astype(float),
     "three parts in a thousand": lambda model, v, s: 1.003 * s[3].astype(float),
@@ -222,25 +185,17 @@ def coarse(name: str) -> Model:
     tables = []
     for lobe in exact.lobes:
         domain = np.float32(lobe.domain)
-        texels = np.float32(
-            analytic.quantile(
-                lobe, rows[:, None], m[None], (columns >= width / 2)[None]
-            )
-        )
+        texels = np.float32(analytic.quantile(lobe, rows[:, None], m[None], (columns >= width / 2)[None]))
         texels[:, 0], texels[:, -1] = domain
         tables.append(MemoryTable(texels, tuple(domain), warp_e=e))
-    made = create(
-        *tables, azimuth=SUM if exact.direct_phi.azimuth == "sum" else DIFFERENCE
-    )
+    made = create(*tables, azimuth=SUM if exact.direct_phi.azimuth == "sum" else DIFFERENCE)
     made.name = name
     return made
 
 
 def test_coarse_tables_gather_light_without_bias_too(model):
     viewer = VIEWERS[0]
-    mean, error = estimate(
-        coarse(model.name), "mixture", *viewer, density=lambda s: s[3].astype(float)
-    )
+    mean, error = estimate(coarse(model.name), "mixture", *viewer, density=lambda s: s[3].astype(float))
     assert abs(mean - reference(model.name, "mixture", *viewer)) < SIGMAS * error
 
 
@@ -250,12 +205,7 @@ def test_density_of_the_lobe_instead_of_the_table_is_rejected(model):
 
     def formula(s):
         theta, phi = directions(s)
-        return (
-            scattering(model.name, "mixture", *viewer, theta, phi)
-            * np.cos(theta)
-            * s[3]
-            / s[2]
-        )
+        return scattering(model.name, "mixture", *viewer, theta, phi) * np.cos(theta) * s[3] / s[2]
 
     mean, error = estimate(coarse(model.name), "mixture", *viewer, density=formula)
     assert abs(mean - reference(model.name, "mixture", *viewer)) > SIGMAS * error
@@ -278,9 +228,7 @@ def random_inputs(seed: int, n: int = 100_000) -> tuple[np.ndarray, ...]:
 )
 def test_extreme_weights_are_a_single_lobe(model, weight, lobe):
     theta_r, phi_r, u_lobe, u_theta, u_phi = random_inputs(1)
-    mixed = sample_mixture(
-        model, filled(u_lobe.size, weight), theta_r, phi_r, u_lobe, u_theta, u_phi
-    )
+    mixed = sample_mixture(model, filled(u_lobe.size, weight), theta_r, phi_r, u_lobe, u_theta, u_phi)
     alone = sample_lobe(model, lobe, theta_r, phi_r, u_theta, u_phi)
     for a, b in zip(mixed, alone, strict=True):
         assert np.array_equal(a, b)
@@ -288,9 +236,7 @@ def test_extreme_weights_are_a_single_lobe(model, weight, lobe):
 
 def test_direction_is_that_of_the_lobe_chosen(model):
     theta_r, phi_r, u_lobe, u_theta, u_phi = random_inputs(2)
-    mixed = sample_mixture(
-        model, filled(u_lobe.size, WEIGHT), theta_r, phi_r, u_lobe, u_theta, u_phi
-    )
+    mixed = sample_mixture(model, filled(u_lobe.size, WEIGHT), theta_r, phi_r, u_lobe, u_theta, u_phi)
     direct = sample_lobe(model, "direct", theta_r, phi_r, u_theta, u_phi)
     multiple = sample_lobe(model, "multiple", theta_r, phi_r, u_theta, u_phi)
     chosen = u_lobe < np.float32(WEIGHT)
@@ -330,9 +276,7 @@ def test_density_integrates_to_one(model):
             np.repeat(theta, n_phi),
             np.tile(phi, n_theta),
         ).astype(float)
-        assert pdf.sum() * np.pi / n_theta * 2 * np.pi / n_phi == pytest.approx(
-            1, abs=2e-3
-        )
+        assert pdf.sum() * np.pi / n_theta * 2 * np.pi / n_phi == pytest.approx(1, abs=2e-3)
 
 
 @pytest.mark.parametrize("position", range(6))

@@ -23,34 +23,30 @@ readings, the azimuth, and theta of the multiple lobe; the readings share the la
 
 ## Decision
 
-1. **Warp: quartic, folded at u = 1/2**, columns uniform in (m+e)^(1/4) with m = min(u, 1-u). With *linear* cells
-   no warp is good enough: of all that were tried, those optimised for one lobe alone included, none brings theta
-   of the direct lobe below 5.7e-4 (fitted) or 9.4e-4 (printed). With *curved* cells every smooth warp with dense
-   ends is good enough, so the cheapest wins: two square roots, and three multiplications for its derivative, where
-   logit and probit take a logarithm and an exponential each. They would add less variance on smooth lobes (5e-6
-   against 2e-5), ten times below what anyone can see; the fold's kink at u = 1/2 is what the quartic pays. The
-   two-sided power has no kink and no closed inverse.
-2. **Curved (quadratic) cells**: x(f) = x0 + f (d + c (1-f)), c from the widths of both neighbours. Ten times less
-variance for
-   one more texel on either side and four more operations.
-3. **e is measured for each table**, a power of two: the largest that keeps V, because a large e keeps the end
-   cells wide in float steps.
+1. **Warp: quartic, folded at u = 1/2**, columns uniform in (m+e)^(1/4) with m = min(u, 1-u). With *linear*
+   cells no warp is good enough: of all that were tried, those optimised for one lobe alone included, none
+   brings theta of the direct lobe below 5.7e-4 (fitted) or 9.4e-4 (printed). With *curved* cells every
+   smooth warp with dense ends is good enough, so the cheapest wins: two square roots, and three
+   multiplications for its derivative, where logit and probit take a logarithm and an exponential each. They
+   would add less variance on smooth lobes (5e-6 against 2e-5), ten times below what anyone can see; the
+   fold's kink at u = 1/2 is what the quartic pays. The two-sided power has no kink and no closed inverse.
+2. **Curved (quadratic) cells**: x(f) = x0 + f (d + c (1-f)), c from the widths of both neighbours. Ten
+   times less variance for one more texel on either side and four more operations.
+3. **e is measured for each table**, a power of two: the largest that keeps V, because a large e keeps the
+   end cells wide in float steps.
 4. **The outermost knot lies on the domain's end**, not at the 2^-25 quantile. Stopping at the quantile
-shortens the
-   tails and loses 1e-7 of the lobe's mass, but a renderer's BSDF is not the lobe: a direction that the table
-   never draws is energy that no weight restores. With curved end cells full support costs a few 1e-6 of V,
-   and the largest weight stays below 5.
+   shortens the tails and loses 1e-7 of the lobe's mass, but a renderer's BSDF is not the lobe: a direction
+   that the table never draws is energy that no weight restores. With curved end cells full support costs a
+   few 1e-6 of V, and the largest weight stays below 5.
 5. **Rows are even in theta_r.** Uneven rows help one lobe and harm another: rows dense in the middle take
-theta
-   of the printed direct lobe from 8e-5 to 5e-5 and double V everywhere else.
+   theta of the printed direct lobe from 8e-5 to 5e-5 and double V everywhere else.
 6. **The azimuth keeps the whole range** of theta_r. Half of it would do, at the same V, and save 3 KB; but
-then
-   one table of three would be read by another rule, and lobes of one's own need not be even.
-7. **Texels are 32-bit floats.** Half floats of the angle make cells of the direct lobe flat at almost every size.
-   The best 16-bit form, the distance to the nearer end as a half float, is as good as floats up to 32x32, and adds
-   variance from there on (1.6e-4 instead of 2.0e-5 at 64x64), since the middle of the domain is then known to
-   5e-4 rad only. In the direct lobe it never reaches the default tolerance of 1e-4, and the library expands texels
-   on loading anyway: not shipped.
+   then one table of three would be read by another rule, and lobes of one's own need not be even.
+7. **Texels are 32-bit floats.** Half floats of the angle make cells of the direct lobe flat at almost every
+   size. The best 16-bit form, the distance to the nearer end as a half float, is as good as floats up to
+   32x32, and adds variance from there on (1.6e-4 instead of 2.0e-5 at 64x64), since the middle of the
+   domain is then known to 5e-4 rad only. In the direct lobe it never reaches the default tolerance of 1e-4,
+   and the library expands texels on loading anyway: not shipped.
 """
 
 WARPS = ("candidate", "cells", *(f"{lobe.model}/{lobe.name}" for lobe in study.LOBES))

@@ -52,3 +52,16 @@ def load_engine(build: Path = DEFAULT_BUILD) -> Any:
     mitsuba.set_log_level(mitsuba.LogLevel.Warn)
     mitsuba.file_resolver().append(str(folder))
     return mitsuba
+
+
+def main() -> int:
+    """Prints the folder that holds plugins/, or says on stderr why there is none."""
+    try:
+        print(build_plugin())
+    except PluginUnavailable as error:
+        print(f"SKIPPED: the Mitsuba plugin is not built. {error}", file=sys.stderr)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,4 +1,4 @@
-"""`make bench`: bakes tables of 64x64 and 256x256, builds hairlut_bench, runs it once, prints ratios of speed."""
+"""`make bench`: bakes tables of 64x64 and 256x256, builds hairlut_bench, runs it, prints ratios of speed."""
 
 import argparse
 import os

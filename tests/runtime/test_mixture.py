@@ -160,7 +160,8 @@ WRONG = {
     "azimuth of the other reading": lambda model, v, s: (
         pdf_n(model, "mixture", WEIGHT, v[0], -v[1], s[0], s[1]).astype(float) * s[3] / s[2]
     ),
-    "one cosine too many": lambda model, v, s: s[2].astype(float),
+    # divided out once more, not left in: that would have no finite variance at the poles to judge it by
+    "a cosine divided out twice": lambda model, v, s: s[3].astype(float) ** 2 / s[2],
     "three parts in a thousand": lambda model, v, s: 1.003 * s[3].astype(float),
 }
 

@@ -158,9 +158,8 @@ def _give_way(even: Array, given: Array) -> Array:
 
 def _log_density(rows: Rows, x: Array, row: Array) -> Array:
     values = rows.log_density(x, row)
-    bad = np.isnan(values) | (values == np.inf)
-    if bad.any():
-        n, k = np.argwhere(bad)[0]
+    if not values.max(initial=-np.inf) < np.inf:  # also if one of them is NaN
+        n, k = np.argwhere(np.isnan(values) | (values == np.inf))[0]
         raise HairlutError(
             f"{rows.label(row[n])}: the log-density is {values[n, k]} at x = {x[n, k]:.9g}: "
             "expected a finite number, or -inf where the density is zero"

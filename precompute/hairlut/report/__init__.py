@@ -5,22 +5,39 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-INDEX = """# Report
+from .markdown import table
 
-| page | what it answers |
-|---|---|
-| [Speed against error](speed_error.md) | what a sample costs in time and in variance, at every size, beside
-its rivals | | [Hard cases](hard_cases.md) | narrow, cut, split, flat and broken densities: what works with
-which error, what is refused | | [The study](study.md) | why this warp, these cells, these ends: every
-alternative on the same measure | | [In a renderer](render.md) | variance and bias of a rendered lock of hair
-| | [A scene's own hair](fit.md) | tables fitted to a hair BSDF, beside that BSDF's own sampler |
-| [Shaders](shaders.md) | the same tables on the GPU's side, checked against C | | [Explorer](explorer.html)
-| the lobes to play with, in a browser |
+PAGES = (
+    (
+        "[Speed against error](speed_error.md)",
+        "time and variance of a sample, at every size, beside its rivals",
+    ),
+    (
+        "[Hard cases](hard_cases.md)",
+        "narrow, cut, split, flat and broken densities: with which error they work",
+    ),
+    (
+        "[The study](study.md)",
+        "why this warp, these cells, these ends: every alternative on the same measure",
+    ),
+    ("[In a renderer](render.md)", "variance and bias of a rendered lock of hair"),
+    ("[A scene's own hair](fit.md)", "tables fitted to a hair BSDF, beside that BSDF's own sampler"),
+    ("[Shaders](shaders.md)", "the same tables on the GPU's side, checked against C"),
+    ("[Explorer](explorer.html)", "the lobes to play with, in a browser"),
+)
 
+AFTER = """
 `make report` writes the first three again, `hairlut plot luts` draws each table.
+
+![Time per sample against relative variance](speed_error.svg)
 
 ![A lobe, its texture, and draws from it](lobe_and_texture.png)
 """
+
+
+def index() -> str:
+    """The page that leads to the others."""
+    return "# Report\n\n" + table(("page", "what it answers"), PAGES) + AFTER
 
 
 @contextmanager
@@ -38,7 +55,7 @@ def write(out: Path, luts: Path, bench: Path, parts: Iterable[str]) -> list[Path
     out.mkdir(parents=True, exist_ok=True)
     pages = {"speed": _speed, "hard": _hard, "study": _study, "pictures": _pictures}
     written = [page for part in parts for page in pages[part](out, luts, bench)]
-    (out / "README.md").write_text(INDEX)
+    (out / "README.md").write_text(index())
     return [*written, out / "README.md"]
 
 
@@ -76,7 +93,7 @@ def _hard(out: Path, luts: Path, bench: Path) -> list[Path]:
         for case in hard.CASES:
             step(case.name)
             outcomes.append(hard.attempt(case))
-        draws = [end for table, lobe in _shipped(luts) for end in hard.ends(table, lobe)]
+        draws = [end for baked, lobe in _shipped(luts) for end in hard.ends(baked, lobe)]
     page = out / "hard_cases.md"
     page.write_text(hard.page(outcomes, draws))
     return [page]
@@ -93,5 +110,5 @@ def _study(out: Path, luts: Path, bench: Path) -> list[Path]:
 def _pictures(out: Path, luts: Path, bench: Path) -> list[Path]:
     from .. import exr, plot
 
-    table, _ = exr.read(luts / "fitted" / "direct_theta.exr")
-    return [plot.plot_lobe_and_texture(table, out / "lobe_and_texture.png")]
+    shown, _ = exr.read(luts / "fitted" / "direct_theta.exr")
+    return [plot.plot_lobe_and_texture(shown, out / "lobe_and_texture.png")]

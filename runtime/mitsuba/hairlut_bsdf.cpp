@@ -4,6 +4,8 @@
  *   direct_weight  float   probability of the direct lobe against the multiple lobe, in [0,1] (default 0.5)
  *   nested_weight  float   probability of the nested BSDF's own sampling, in [0,1] (default 0)
  *   uniform        boolean draw uniformly from the sphere in place of the tables, for comparison (default false)
+ *   light_sampling boolean false claims Dirac samples, so that integrators find light by this BSDF's sampling alone, for
+ *                          comparison (default true)
  *   (nested)       bsdf    one BSDF without Dirac components that gives the values
  *
  * Conventions. On a curve the shading frame's t, local +y, is the fibre: sin(theta) = w.y. Azimuths run from the surface
@@ -93,9 +95,11 @@ public:
         if (has_flag(m_nested->flags(), BSDFFlags::DeltaReflection) ||
             has_flag(m_nested->flags(), BSDFFlags::DeltaTransmission))
             Throw("hairlut: the nested BSDF has a Dirac component, which no table samples; nest a rough one");
+        const bool light_sampling = props.get<bool>("light_sampling", true);
+        m_sampled_type = light_sampling ? +BSDFFlags::Glossy : +BSDFFlags::DeltaReflection;
         for (size_t i = 0; i < m_nested->component_count(); ++i)
-            m_components.push_back(m_nested->flags(i));
-        m_flags = m_nested->flags();
+            m_components.push_back(light_sampling ? m_nested->flags(i) : DIRAC);
+        m_flags = light_sampling ? m_nested->flags() : DIRAC;
     }
 
     std::pair<BSDFSample3f, Spectrum> sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, Float sample1,
@@ -103,14 +107,15 @@ public:
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
         BSDFSample3f bs = dr::zeros<BSDFSample3f>();
         if (sample1 < m_nested_weight) {
-            Spectrum ignored;
-            std::tie(bs, ignored) = m_nested->sample(ctx, si, sample1 / m_nested_weight, sample2, active);
-            if (!(bs.pdf > 0.f))
-                return { bs, 0.f };
+            Spectrum weight;
+            std::tie(bs, weight) = m_nested->sample(ctx, si, sample1 / m_nested_weight, sample2, active);
+            bs.sampled_type = m_sampled_type;
+            if (m_nested_weight >= 1.f || !(bs.pdf > 0.f))
+                return { bs, weight };
         } else {
             bs.wo = propose(si, (sample1 - m_nested_weight) / (1.f - m_nested_weight), sample2);
             bs.eta = 1.f;
-            bs.sampled_type = +BSDFFlags::Glossy;
+            bs.sampled_type = m_sampled_type;
             bs.sampled_component = 0;
         }
         auto [value, density] = eval_pdf(ctx, si, bs.wo, active);
@@ -161,6 +166,8 @@ public:
     MI_DECLARE_CLASS(HairlutBSDF)
 
 private:
+    static constexpr uint32_t DIRAC = BSDFFlags::DeltaReflection | BSDFFlags::FrontSide | BSDFFlags::BackSide;
+
     static float probability(const Properties &props, const char *name, float fallback) {
         const float p = props.get<ScalarFloat>(name, fallback);
         if (!(p >= 0.f && p <= 1.f))
@@ -199,6 +206,7 @@ private:
     Tables m_tables;
     float m_direct_weight, m_nested_weight;
     bool m_uniform;
+    uint32_t m_sampled_type;
     ref<Base> m_nested;
 
     MI_TRAVERSE_CB(Base, m_nested)

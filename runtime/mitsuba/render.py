@@ -56,7 +56,7 @@ def main() -> int:
         save(*render_all(mi, quality_of(arguments), DEFAULT_BUILD))
     from hairscene.page import write_page
 
-    print(write_page(mi, *load(), REPORT))
+    print(write_page(mi, *load(), DEFAULT_BUILD / "strands.txt", REPORT))
     return 0
 
 

@@ -104,7 +104,9 @@ def reference(mi, hair_scene, nested):
 
 @pytest.mark.parametrize("sky", ["even", "bright side"])
 @pytest.mark.parametrize(
-    "parameters", [{"model": "printed"}, {"model": "fitted"}, {"nested_weight": 0.5}], ids=str
+    "parameters",
+    [{"model": "printed"}, {"model": "fitted"}, {"nested_weight": 0.5}, {"light_sampling": False}],
+    ids=str,
 )
 def test_mean_image_is_the_reference(mi, hair_scene, nested, reference, parameters, sky):
     radiance = even_sky() if sky == "even" else bright_side()

@@ -70,7 +70,7 @@ def scenes(mi: Any, quality: Quality, folder: Path) -> dict[tuple[str, str], Any
     loaded = {}
     for name, setting in SETTINGS.items():
         for sampler in SAMPLERS:
-            bsdf = bsdf_dict(sampler, light_hair())
+            bsdf = bsdf_dict(sampler, light_hair(), setting.light_sampling)
             description = scene_dict(mi, strands, bsdf, (quality.width, quality.height), setting.lamps)
             loaded[name, sampler] = mi.load_dict({**description, "integrator": setting.integrator})
     return loaded

@@ -12,6 +12,7 @@ import numpy as np
 
 from hairscene import figures, lobes
 from hairscene.batches import BATCH, SMALL, Images
+from hairscene.occlusion import share_that_meets_hair
 from hairscene.perception import delta_e_2000, delta_e_itp
 from hairscene.samplers import LABELS, REFERENCE, SAMPLERS, SETTINGS
 from hairscene.statistics import COUNTS, at_count, bias, variance, variance_per_sample
@@ -46,8 +47,10 @@ class Results:
         return self.seconds[f"{setting}/{sampler}/{BATCH}"]
 
 
-def write_page(mi: Any, images: Mapping[str, Images], seconds: Mapping[str, float], folder: Path) -> Path:
-    """Writes render.md and its pictures; returns the page's path."""
+def write_page(
+    mi: Any, images: Mapping[str, Images], seconds: Mapping[str, float], strands: Path, folder: Path
+) -> Path:
+    """Writes render.md and its pictures to `folder`, for the scene of `strands`; returns the page's path."""
     folder.mkdir(parents=True, exist_ok=True)
     results = Results(images, seconds)
     _draw(mi, results, folder)
@@ -57,6 +60,7 @@ def write_page(mi: Any, images: Mapping[str, Images], seconds: Mapping[str, floa
         _overview(results),
         answers=_answers(results),
         variance=_variance(results),
+        hidden=f"{100 * share_that_meets_hair(mi, strands):.0f} %",
         bias=_bias(results),
         plane=_plane(mi),
         perception=_perception(results),
@@ -155,7 +159,7 @@ def _variance(results: Results) -> str:
         cost = results.time(setting, sampler) / results.time(setting, "uniform")
         gains = ["1", "1"] if sampler == "uniform" else [f"{ratio:.2f} +- {ratio_error:.2f}", f"{timed:.2f}"]
         rows.append(
-            [setting, LABELS[sampler], f"{value:.3f} +- {error:.3f}", gains[0], f"{cost:.2f}", gains[1]]
+            [setting, LABELS[sampler], f"{value:.2e} +- {error:.0e}", gains[0], f"{cost:.2f}", gains[1]]
         )
     header = [
         "setting",

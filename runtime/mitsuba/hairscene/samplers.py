@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 Parameters = dict[str, object]
 
-SAMPLERS: dict[str, Parameters | None] = {
+SAMPLERS: dict[str, Parameters] = {
     "uniform": {"uniform": True},
     "printed": {"model": "printed"},
     "fitted": {"model": "fitted"},
-    "own": None,  # without the plugin
+    "own": {"nested_weight": 1.0},
     "mix": {"model": "fitted", "nested_weight": 0.5},
 }
 
@@ -30,17 +30,17 @@ class Setting:
     title: str
     integrator: Parameters
     lamps: bool
+    light_sampling: bool
 
 
 _ONE_SCATTERING: Parameters = {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1}
+_FIVE_SCATTERINGS: Parameters = {"type": "path", "max_depth": 6, "rr_depth": 100}
 
 SETTINGS = {
-    "sky": Setting("one scattering, found by BSDF sampling alone, sky without lamps", _ONE_SCATTERING, False),
-    "scatter": Setting("one scattering, found by BSDF sampling alone, sky and lamps", _ONE_SCATTERING, True),
+    "single": Setting("one scattering, BSDF sampling alone, sky", _ONE_SCATTERING, False, False),
+    "walk": Setting("up to five scatterings, BSDF sampling alone, sky", _FIVE_SCATTERINGS, False, False),
     "path": Setting(
-        "up to five scatterings, light sampling combined with BSDF sampling, sky and lamps",
-        {"type": "path", "max_depth": 6, "rr_depth": 100},
-        True,
+        "up to five scatterings, with light sampling, sky and lamps", _FIVE_SCATTERINGS, True, True
     ),
 }
 
@@ -49,7 +49,6 @@ REFERENCE = (
 )
 
 
-def bsdf_dict(sampler: str, nested: Parameters) -> Parameters:
+def bsdf_dict(sampler: str, nested: Parameters, light_sampling: bool = True) -> Parameters:
     """The BSDF for `mi.load_dict` that draws as `sampler` says and has the values of `nested`."""
-    parameters = SAMPLERS[sampler]
-    return nested if parameters is None else {"type": "hairlut", "nested": nested, **parameters}
+    return {"type": "hairlut", "nested": nested, "light_sampling": light_sampling, **SAMPLERS[sampler]}

@@ -17,7 +17,7 @@ help:
 	@echo "make test     every test; what a missing package keeps from running is listed as skipped"
 	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
 	@echo "make bench    time the C library and its rivals, as ratios"
-	@echo "make report   regenerate luts/report/: speed against error, hard cases, the study"
+	@echo "make report   regenerate luts/report/: speed against error, hard cases, the study, shaders, explorer"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
 	@echo "make render   render the hair scene with the Mitsuba plugin (about 10 minutes)"
 	@echo "make fuzz     60 seconds of coverage-guided fuzzing of the loader and the memory path"
@@ -61,6 +61,8 @@ bench: build
 report: build
 	@test -x $(BENCH) || $(BIN)/python tests/bench/run.py --filter '^none$$'
 	$(HAIRLUT) report --bench $(BENCH)
+	$(HAIRLUT) view
+	PYTHONPATH=tests $(BIN)/python -m shaders.report
 
 plugin: setup
 	@cd runtime/mitsuba && $(BIN)/python -m hairscene.plugin

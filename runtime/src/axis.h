@@ -184,7 +184,8 @@ static inline float hairlut_cell_solve(const hairlut_cell *cell, float x, float 
 {
     const float d = hairlut_clamp(x - cell->x0, 0.0f, cell->d);
     const float flat = cell->d - fabsf(cell->c);
-    const float away = cell->c > 0.0f ? cell->d - d : d;
+    const float far_end = 0.5f * (cell->d + copysignf(cell->d, cell->c)); /* d or 0: c's sign is no branch to predict */
+    const float away = fabsf(far_end - d);
     *slope = sqrtf(flat * flat + 4.0f * fabsf(cell->c) * away);
     return hairlut_min(2.0f * d / (cell->d + cell->c + *slope), 1.0f);
 }

@@ -59,7 +59,7 @@ bench: build
 	$(BIN)/python tests/bench/run.py
 
 report: build
-	@test -x $(BENCH) || $(BIN)/python tests/bench/run.py --filter '^none$$'
+	$(BIN)/python tests/bench/run.py --build-only
 	$(HAIRLUT) report --bench $(BENCH)
 	$(HAIRLUT) view
 	PYTHONPATH=tests $(BIN)/python -m shaders.report

@@ -18,6 +18,7 @@ extern "C" {
 }
 #include "axis_bench.h"
 #include "rivals/rivals.h"
+#include "warps.h"
 
 namespace {
 
@@ -225,6 +226,14 @@ void add_rivals()
     }
 }
 
+void add_warps(const std::string &how, const bench_warp *warps)
+{
+    for (int i = 0; i < BENCH_WARPS; ++i)
+        add("warp/" + how + "/" + warps[i].name, [map = warps[i].map](Arrays &all) {
+            map(count, all.u_theta.data(), all.a.data(), all.b.data());
+        });
+}
+
 // Every subdirectory of `directory` is a model; without one, the compiled-in models stand in.
 std::map<std::string, const hairlut_model *> models(const std::string &directory)
 {
@@ -278,6 +287,8 @@ int main(int argc, char **argv)
         add_lobes(name, *model);
     }
     add_rivals();
+    add_warps("scalar", bench_warps_scalar);
+    add_warps("vector", bench_warps_vector);
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }

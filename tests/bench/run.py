@@ -65,11 +65,14 @@ def main() -> None:
         help="directory of model directories; default: baked for the benchmark",
     )
     parser.add_argument("--filter", default=".", metavar="REGEX", help="which benchmarks to run")
+    parser.add_argument("--build-only", action="store_true", help="build hairlut_bench, time nothing")
     parser.add_argument("--repetitions", type=int, default=9)
     parser.add_argument("--seconds", type=float, default=0.02, help="least time of each repeat")
     parser.add_argument("--json", type=Path, default=BUILD / "results.json", metavar="FILE")
     args = parser.parse_args()
     program = build()
+    if args.build_only:
+        return
     if not args.luts:
         args.luts = BUILD / "luts"
         bake(args.luts)

@@ -22,7 +22,7 @@ SIDES = (16, 32, 64, 128, 256, 512, 1024)
 SEARCHED = 128  # sides up to which e is searched for; above, the smallest that leaves no cell too narrow
 PATTERN = (
     "(sample|uniform)/(scalar|batch)/.*/direct_theta|rival/.*/fitted/direct_theta|"
-    "(sample|uniform)/scalar/64/.*|pdf/(scalar|batch)/64/direct_theta|floor/(index|angles)/(64|256)/direct_theta"
+    "(sample|uniform)/scalar/64/.*|warp/.*|pdf/(scalar|batch)/64/direct_theta|floor/(index|angles)/(64|256)/direct_theta"
 )
 
 RIVALS = {
@@ -34,6 +34,16 @@ RIVALS = {
     "hybrid/vector256": "hybrid, compiler's AVX2 with -ffast-math",
     "hybrid/vector512": "hybrid, compiler's AVX-512 with -ffast-math",
     "mkl/vector": "MKL: vsErf, vsErfInv, vsExp over arrays",
+}
+
+CANDIDATES = {
+    "uniform": "uniform in u",
+    "one-sided-power": "one-sided power u^(1/4)",
+    "two-sided-power": "two-sided power",
+    "logit": "regularised logit",
+    "probit": "regularised probit, by Giles' polynomial",
+    "octaves": "knots per octave, a float's bits",
+    "quartic": "quartic, folded",
 }
 
 
@@ -205,6 +215,11 @@ this Gaussian, so their V is 0: that a table can do without a closed form is its
 asks what it costs where there is one.
 """
 
+WARPS = """
+By themselves, the warps of the [study](study.md), u to coordinate and slope. A map optimised for one lobe
+is a spline, which costs a search or a table of its own, and was not timed.
+
+"""
 HALF = """
 V stops falling at about 256: there the end cells of a row are only a few float steps wide, and e has to grow
 with the width to keep them from vanishing. Nothing is gained beyond that size, and 64x64 is where V is
@@ -270,7 +285,18 @@ def _warp(times: timing.Times) -> str:
         quartic, uniform = (times.get(f"{kind}/scalar/64/{name}") for kind in ("sample", "uniform"))
         if quartic and uniform:
             rows.append((name, f"{uniform:.1f}", f"{quartic:.1f}", f"{quartic / uniform - 1:+.0%}"))
-    return markdown_table(("table, 64x64, one call", "uniform, ns", "quartic, ns", "more"), rows)
+    whole = markdown_table(("table, 64x64, one call", "uniform, ns", "quartic, ns", "more"), rows)
+    return whole + WARPS + _candidates(times)
+
+
+def _candidates(times: timing.Times) -> str:
+    """The warps of the study, by themselves."""
+    rows = []
+    for name, label in CANDIDATES.items():
+        scalar, vector = (times.get(f"warp/{form}/{name}") for form in ("scalar", "vector"))
+        if scalar and vector:
+            rows.append((label, f"{scalar:.1f}", f"{vector:.2f}"))
+    return markdown_table(("warp", "ns, one call", "ns, arrays, compiler's fastest flags"), rows)
 
 
 def verdict(times: timing.Times) -> str:

@@ -95,10 +95,11 @@ def render_all(mi: Any, quality: Quality, folder: Path) -> tuple[dict[str, Image
             images.setdefault(job.key, []).append(image.astype(np.float32))
             progress.advance(task, job.spp)
     pixels = quality.width * quality.height
-    counts = {key: len(list_) * pixels * _spp(key) for key, list_ in images.items()}
+    counts = {key: len(list_) * pixels * samples_per_pixel(key) for key, list_ in images.items()}
     return {k: np.stack(v) for k, v in images.items()}, {k: seconds[k] / counts[k] for k in images}
 
 
-def _spp(key: str) -> int:
+def samples_per_pixel(key: str) -> int:
+    """Of one image under that key."""
     last = key.rsplit("/", 1)[1]
     return BATCH if last == "reference" else int(last)

@@ -77,8 +77,9 @@ def differences(images: Mapping[str, Array], reference: Array, count: int, path:
         for axis, sampler in zip(line, SAMPLERS, strict=True):
             map_ = measure(images[sampler], reference)
             shown = axis.imshow(map_, vmin=0.0, vmax=top, cmap="magma", interpolation="nearest")
-            _bare(axis, f"{LABELS[sampler]}, {count} spp: {name}, mean {map_.mean():.1f}")
+            _bare(axis, f"{LABELS[sampler]}, mean {map_.mean():.1f}")
         figure.colorbar(shown, ax=line[-1])
+        line[0].set_ylabel(f"{name}, {count} spp")
     _save(plt, figure, path)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from .errors import HairlutError
 from .lobes import Array, Lobe, LogDensity
 
-ORDER = 12
+ORDER = 10
 FIRST_PANELS = 128  # with 3 * ORDER points each: what is wider than 1/2000 of the domain cannot slip through
 PORTION = 512  # panels evaluated at once
 MAX_PANELS = 4096

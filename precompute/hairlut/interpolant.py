@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import parameter
 from .errors import HairlutError
 from .lobes import Array
 
@@ -44,15 +45,7 @@ class Cell:
     @classmethod
     def parse(cls, text: str) -> "Cell":
         """From "linear" or "quadratic limit=NUMBER", as in a file's header."""
-        name, _, parameter = text.partition(" ")
-        key, _, number = parameter.partition("=")
-        try:
-            limit = float(number) if parameter else 0.0
-        except ValueError:
-            limit = np.nan
-        if np.isnan(limit) or (parameter and key != "limit"):
-            raise HairlutError(f"cell {text!r} cannot be read: expected 'quadratic limit=NUMBER' or 'linear'")
-        return cls(name, limit)
+        return cls(*parameter.parse(text, "cell", "limit", "'quadratic limit=NUMBER' or 'linear'"))
 
 
 def padded(texels: Array) -> Array:

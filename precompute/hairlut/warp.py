@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import parameter
 from .errors import HairlutError
 from .lobes import Array
 
@@ -46,15 +47,7 @@ class Warp:
     @classmethod
     def parse(cls, text: str) -> "Warp":
         """From "uniform" or "quartic e=NUMBER", as in a file's header."""
-        name, _, parameter = text.partition(" ")
-        key, _, number = parameter.partition("=")
-        try:
-            e = float(number) if parameter else 0.0
-        except ValueError:
-            e = np.nan
-        if np.isnan(e) or (parameter and key != "e"):
-            raise HairlutError(f"warp {text!r} cannot be read: expected 'quartic e=NUMBER' or 'uniform'")
-        return cls(name, e)
+        return cls(*parameter.parse(text, "warp", "e", "'quartic e=NUMBER' or 'uniform'"))
 
     def scale(self, width: int) -> tuple[float, float]:
         """(F0, k): (m+e)^(1/4) = F0 + k c for the quartic warp; m = k c for the uniform one, with F0 = 0."""

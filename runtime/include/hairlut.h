@@ -160,6 +160,25 @@ HAIRLUT_API hairlut_sample hairlut_sample_mixture(const hairlut_model *model, fl
 HAIRLUT_API float hairlut_pdf_mixture(const hairlut_model *model, float direct_weight, float theta_r, float phi_r,
                                       float theta_i, float phi_i);
 
+/* ---- any lobes of any models ---------------------------------------------------------------------------------- */
+
+typedef enum hairlut_lobe { HAIRLUT_LOBE_DIRECT = 0, HAIRLUT_LOBE_MULTIPLE = 1 } hairlut_lobe;
+
+/* One lobe of a mixture. The array of them is the caller's; it is read while the call lasts. */
+typedef struct hairlut_component {
+    const hairlut_model *model; /* never NULL, unless weight is 0 or negative: then it is not read */
+    hairlut_lobe lobe;
+    float weight; /* in any unit: lobes are drawn in proportion to their weights. Negative counts as 0 */
+} hairlut_component;
+
+/* Draws from one of n lobes, chosen by u_lobe. The densities returned are the mixture's: the sum of weight * density
+ * over the lobes, divided by the sum of the weights. The time grows with n. Where n <= 0, no weight is above 0, or one
+ * is infinite or NaN, the density is 0. */
+HAIRLUT_API hairlut_sample hairlut_sample_components(const hairlut_component *components, int n, float theta_r,
+                                                     float phi_r, float u_lobe, float u_theta, float u_phi);
+HAIRLUT_API float hairlut_pdf_components(const hairlut_component *components, int n, float theta_r, float phi_r,
+                                         float theta_i, float phi_i);
+
 /* ---- directions in a fibre frame ------------------------------------------------------------------------------ */
 
 /* An orthonormal frame in world space: `tangent` along the fibre, theta is measured towards it;

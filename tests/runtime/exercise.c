@@ -58,6 +58,30 @@ static void check_batches(const hairlut_model *model, size_t n)
         REQUIRE(isfinite(out[2][i]) && isfinite(out[3][i]) && isfinite(out[4][i]));
 }
 
+/* Lobes of several models, with weights of every kind. */
+static void check_components(void)
+{
+    const hairlut_model *a = hairlut_builtin("fitted"), *b = hairlut_builtin("printed");
+    static const float weights[] = {0.0f, 1.0f, -1.0f, 1e-45f, 3e38f, INFINITY, NAN};
+    enum { WEIGHTS = sizeof weights / sizeof *weights };
+    for (int i = 0; i < WEIGHTS; ++i)
+        for (int j = 0; j < WEIGHTS; ++j) {
+            const hairlut_component mixed[] = {{weights[i] > 0.0f ? a : NULL, HAIRLUT_LOBE_DIRECT, weights[i]},
+                                               {weights[j] > 0.0f ? b : NULL, HAIRLUT_LOBE_MULTIPLE, weights[j]}};
+            const int valid = isfinite(weights[i]) && isfinite(weights[j]) && (weights[i] > 0.0f || weights[j] > 0.0f);
+            for (int n = -1; n <= 2; ++n) {
+                static const float u[] = {-1.0f, 0.0f, 0.5f, 1.0f, NAN};
+                for (int k = 0; k < 5; ++k) {
+                    const hairlut_sample s = hairlut_sample_components(mixed, n, 0.3f, 0.5f, u[k], 0.4f, 0.7f);
+                    REQUIRE(isfinite(s.theta_i) && isfinite(s.phi_i) && isfinite(s.pdf_solid_angle));
+                    REQUIRE(n < 2 || (s.pdf_angle > 0.0f) == (valid && u[k] == u[k]));
+                }
+                const float pdf = hairlut_pdf_components(mixed, n, 0.3f, 0.5f, 0.1f, 2.0f);
+                REQUIRE(isfinite(pdf) && (n < 2 || (pdf > 0.0f) == valid));
+            }
+        }
+}
+
 static void check_frame(void)
 {
     const hairlut_frame frame = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
@@ -226,6 +250,7 @@ int main(int argc, char **argv)
     use(hairlut_builtin("fitted"));
     hairlut_free((hairlut_model *)hairlut_builtin("fitted"));
     check_frame();
+    check_components();
     check_creation();
     check_validation();
     check_loader_arguments();

@@ -35,6 +35,21 @@ LOOP void loop_invert(const hairlut_model *model, int lobe, size_t n, const floa
     }
 }
 
+LOOP void loop_sample_components(const hairlut_component *components, int count, size_t n, const float *theta_r,
+                                 const float *phi_r, const float *u_lobe, const float *u_theta, const float *u_phi,
+                                 hairlut_sample *out)
+{
+    for (size_t i = 0; i < n; ++i)
+        out[i] = hairlut_sample_components(components, count, theta_r[i], phi_r[i], u_lobe[i], u_theta[i], u_phi[i]);
+}
+
+LOOP void loop_pdf_components(const hairlut_component *components, int count, size_t n, const float *theta_r,
+                              const float *phi_r, const float *theta_i, const float *phi_i, float *pdf)
+{
+    for (size_t i = 0; i < n; ++i)
+        pdf[i] = hairlut_pdf_components(components, count, theta_r[i], phi_r[i], theta_i[i], phi_i[i]);
+}
+
 static const hairlut_axis *axis_of(const hairlut_model *model, int axis)
 {
     return axis == 0 ? &model->direct_theta : axis == 1 ? &model->direct_phi : &model->multiple_theta;

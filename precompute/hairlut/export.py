@@ -16,7 +16,6 @@ from . import __version__, arrays, exr
 from .axis import AXIS, axis_numbers
 from .errors import HairlutError
 from .files import write_whole
-from .interpolant import padded
 from .table import Table
 
 TABLES = ("direct_theta", "direct_phi", "multiple_theta")
@@ -45,7 +44,7 @@ def export_c(directories: Sequence[Path], out: Path) -> Path:
     parts = [
         f"/* By hairlut {__version__} (export --to c) from {', '.join(names)}; not to be edited. */",
         '#include "internal.h"',
-        *(_rows(table) for tables in models for table in tables),
+        *(_arrays(table) for tables in models for table in tables),
         "const hairlut_builtin_entry hairlut_builtin_entries[] = {",
         *(_entry(tables) for tables in models),
         "};",
@@ -116,32 +115,58 @@ def _literal(x: float) -> str:
     return f"{text}f" if "." in text or "e" in text else f"{text}.0f"
 
 
-def _pivots(texels: np.ndarray) -> np.ndarray:
-    """(H, PIVOTS) every step-th texel of each row, by which the runtime finds the cell of an angle."""
-    height, width = texels.shape
-    step = -(-(width - 1) // PIVOTS)
-    pivots = np.full((height, PIVOTS), np.finfo(np.float32).max, np.float32)
-    inner = texels[:, step : width - 1 : step]
+def _step(width: int) -> int:
+    """Cells of a block of the search."""
+    return next(step for step in (4, 8, 16, 32, 64, 128, 256) if width - 1 <= (PIVOTS + 1) * step)
+
+
+def _rows(table: Table) -> np.ndarray:
+    """The rows of the search, as the runtime stores them (runtime/src/internal.h)."""
+    texels, step = np.concatenate([table.texels, table.texels[-1:]]), _step(table.width)
+    nothing = np.finfo(np.float32).max
+    pivots = np.full((len(texels), PIVOTS), nothing, np.float32)
+    inner = texels[:, step : table.width - 1 : step]
     pivots[:, : inner.shape[1]] = inner
-    return pivots
+    blocks = table.width + -table.width % step
+    beyond = blocks + -blocks % LINE - table.width
+    return np.concatenate([pivots, np.pad(texels, ((0, 0), (0, beyond)), constant_values=nothing)], axis=1)
 
 
-def _rows(table: Table) -> str:
-    """Rows as the runtime stores them (runtime/src/internal.h)."""
-    rows = np.concatenate([_pivots(table.texels), padded(table.texels).astype(np.float32)], axis=1)
-    rows = np.pad(rows, ((0, 0), (0, -rows.shape[1] % LINE)))
-    lines = [",".join(map(_literal, row)) for row in rows]
-    return (
-        "static const float HAIRLUT_LINE_ALIGNED "
-        f"{_array(table)}[HAIRLUT_STORED({table.width}, {table.height})] = {{\n" + ",\n".join(lines) + "};"
+def _cells(table: Table) -> np.ndarray:
+    """The cells, as the runtime stores them, with its float arithmetic: each row from both ends to its middle."""
+    x = np.concatenate([table.texels, table.texels[-1:]])
+    d = np.diff(x, axis=1)
+    c = np.empty_like(d)
+    c[:, 1:-1] = np.float32(0.25) * (d[:, :-2] - d[:, 2:])
+    c[:, 0], c[:, -1] = d[:, 0] - d[:, 1], d[:, -2] - d[:, -1]
+    bound = np.float32(table.cell.limit) * d
+    c = np.clip(c, -bound, bound)
+    half = table.width // 2 + 1
+    low = np.stack([x[:, :-1], d, c], axis=-1)[:, :half]
+    high = np.stack([x[:, 1:], -d, c], axis=-1)[:, ::-1][:, :half]
+    return np.pad(np.concatenate([low, high], axis=1), ((0, 0), (0, 0), (0, 1))).reshape(len(x), -1)
+
+
+def _arrays(table: Table) -> str:
+    """The definitions of a table's rows and cells."""
+    size, name = f"({table.width}, {table.height})", _array(table)
+    return "\n".join(
+        f"static const float HAIRLUT_LINE_ALIGNED {name}_{part}[{macro}{size}] = {{\n"
+        + ",\n".join(",".join(map(_literal, row)) for row in numbers)
+        + "};"
+        for part, macro, numbers in (
+            ("rows", "HAIRLUT_STORED", _rows(table)),
+            ("cells", "HAIRLUT_CELLS", _cells(table)),
+        )
     )
 
 
 def _axis(table: Table) -> str:
     numbers = axis_numbers(table)
-    before, after = numbers[AXIS.index("row_origin") : AXIS.index("e")], numbers[AXIS.index("e") :]
+    before = numbers[AXIS.index("row_origin") : AXIS.index("e")]
+    after = numbers[AXIS.index("e") : AXIS.index("limit")]
     return (
-        f"HAIRLUT_AXIS({_array(table)}, {table.width}, {table.height}, {', '.join(map(_literal, before))}, "
+        f"HAIRLUT_AXIS({_array(table)}_rows, {_array(table)}_cells, {table.width}, {table.height}, {', '.join(map(_literal, before))}, "
         f"{WARPS[table.warp.name]}, {', '.join(map(_literal, after))})"
     )
 

@@ -111,15 +111,12 @@ def cells(table: "Table", theta_r: Array) -> Cells:
     r = np.clip((r - low) / (high - low) * last, 0, last)
     j = np.minimum(r.astype(int), last - 1)
     t = (r - j)[:, None]
-    widths = (1 - t) * np.diff(rows, axis=1)[j] + t * np.diff(rows, axis=1)[j + 1]
+    widths = np.diff(rows, axis=1)
     before, d, after = widths[:, :-2], widths[:, 1:-1], widths[:, 2:]
     bound = table.cell.limit * d
-    return Cells(
-        table=table,
-        x0=(1 - t) * rows[j, 1:-2] + t * rows[j + 1, 1:-2],
-        d=d,
-        c=np.clip((before - after) / 4, -bound, bound),
-    )
+    c = np.clip((before - after) / 4, -bound, bound)
+    x0, d, c = ((1 - t) * part[j] + t * part[j + 1] for part in (rows[:, 1:-2], d, c))
+    return Cells(table=table, x0=x0, d=d, c=c)
 
 
 def sample(table: "Table", theta_r: Array, u: Array) -> tuple[Array, Array]:

@@ -12,10 +12,8 @@ static const float hairlut_inverse_two_pi = 0.159154943f;
 static const float hairlut_two_pi_high = 6.28125f, hairlut_two_pi_low = 1.93530718e-3f;
 static const float hairlut_half_pi_high = 1.57079637f, hairlut_half_pi_low = -4.37113883e-8f;
 
-/* sin(z)/z in powers of z^2, highest first */
-enum { HAIRLUT_SINE_TERMS = 6 };
-static const float hairlut_sine[HAIRLUT_SINE_TERMS] = {-1.0f / 39916800.0f, 1.0f / 362880.0f, -1.0f / 5040.0f,
-                                                       1.0f / 120.0f,       -1.0f / 6.0f,     1.0f};
+/* sin(z) = z + z^3 (s0 + s1 z^2 + s2 z^4 + s3 z^6): the least largest error for z up to pi/2, 5e-9 before rounding */
+static const float hairlut_sine[4] = {-0.166666567f, 0.0083330255f, -0.000198074194f, 2.60190313e-6f};
 
 static inline int hairlut_is_finite(float x)
 {
@@ -29,9 +27,12 @@ static inline float hairlut_floor(float x)
     return n - (float)(n > x);
 }
 
-/* phi modulo 2 pi, from [low, low + 2 pi). What no float resolves (phi beyond 2^24, infinity, NaN) gives low. */
+/* phi modulo 2 pi, from [low, low + 2 pi). What no float resolves (phi beyond 2^24, infinity, NaN) gives low. The
+ * first line is for speed: a renderer's azimuths are mostly in range. */
 static inline float hairlut_wrap(float phi, float low)
 {
+    if (phi >= low && phi < low + hairlut_two_pi)
+        return phi;
     const float n = hairlut_floor((phi - low) * hairlut_inverse_two_pi);
     const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
     return r >= low && r < low + hairlut_two_pi ? r : low;
@@ -45,17 +46,15 @@ static inline float hairlut_wrap_once(float phi, float low)
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 
-/* cos(theta) for |theta| <= pi/2 as the sine of the angle to the pole: 2 ulp up to the pole itself, where theta's
+/* cos(theta) for |theta| <= pi/2 as the sine of the angle to the pole: 2.5 ulp up to the pole itself, where theta's
  * rounding would turn it negative and the smallest distance of a float from pi/2 stands in. */
 static inline float hairlut_cos(float theta)
 {
     const float distance = (hairlut_half_pi_high - fabsf(theta)) + hairlut_half_pi_low;
     const float z = distance > -hairlut_half_pi_low ? distance : -hairlut_half_pi_low;
     const float w = z * z;
-    float p = hairlut_sine[0];
-    for (int k = 1; k < HAIRLUT_SINE_TERMS; ++k)
-        p = hairlut_sine[k] + w * p;
-    return z * p;
+    const float low = hairlut_sine[0] + hairlut_sine[1] * w, high = hairlut_sine[2] + hairlut_sine[3] * w;
+    return z + z * w * (low + w * w * high);
 }
 
 #endif

@@ -5,7 +5,7 @@
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
- *   count(a, stride, t, x, n)  if HAIRLUT_SEARCH is defined: hairlut_count with wider vectors; n <= 16, 16 floats are read
+ *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n <= 16, 16 floats are read
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, because a single one would wait for the square roots,
@@ -16,16 +16,9 @@
 
 #include "lobes.h"
 
-#ifndef HAIRLUT_SEARCH
-static inline int count(const float *a, int stride, float t, float x, int n)
-{
-    return hairlut_count(a, stride, t, x, n);
-}
-#endif
-
 enum { BLOCK = 128 }; /* samples a pass */
 
-/* Where the samples of a block read an axis: the offset of the cell's first texel, and hairlut_knot. */
+/* Where the samples of a block read an axis: the offset of the cell, and hairlut_knot. */
 typedef struct places {
     int at[BLOCK];
     float t[BLOCK];
@@ -33,64 +26,77 @@ typedef struct places {
     float du[BLOCK];
 } places;
 
-/* Where the directions of a block are looked up: the offset of the row, the cell as far as it is found, and the angle. */
+/* Where the directions of a block are looked up: the row; the cell as far as it is found, in the end counted from the nearer
+ * end of the row; where to read on, first among the texels, then among the cells; the angle; and axis->du,
+ * or 0 where the angle lies outside the domain. */
 typedef struct queries {
-    int row[BLOCK];
+    int j[BLOCK];
     int cell[BLOCK];
+    int at[BLOCK];
     float t[BLOCK];
     float x[BLOCK];
+    float du[BLOCK];
 } queries;
 
 typedef struct cells {
     real x0, d, c;
 } cells;
 
+/* The cells of a block. */
+typedef struct block_of_cells {
+    float x0[BLOCK];
+    float d[BLOCK];
+    float c[BLOCK];
+} block_of_cells;
+
 static inline real clamp(real x, real low, real high)
 {
     return smaller(larger(x, low), high);
 }
 
-static inline real blend_width(real a, real b, real s, real t)
-{
-    return add(mul(s, a), mul(t, b));
-}
-
-/* hairlut_axis_rows: the offset of the row below theta_r, and t */
-static inline whole find_rows(const hairlut_axis *axis, real theta_r, real *t)
+/* hairlut_axis_row */
+static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
 {
     const real scaled = mul(sub(theta_r, all(axis->row_origin)), all(axis->row_scale));
     const real r = clamp(scaled, all(0.0f), all(axis->row_last));
-    const whole j = ismaller(truncated(r), iall(axis->height - 2));
+    const whole j = truncated(r);
     *t = sub(r, converted(j));
-    return imul(j, iall(axis->stride));
+    return j;
 }
 
-/* hairlut_axis_du */
-static inline real du_dcolumn(const hairlut_axis *axis, real y)
+/* The offset of cell i of a half row. */
+static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
 {
-    return axis->warp == HAIRLUT_WARP_QUARTIC ? mul(all(axis->du), mul(y, mul(y, y))) : all(axis->du);
+    const whole row = imul(j, iall((int)axis->pitch));
+    const whole half = ichoose(high, iall((int)axis->half), iall(0));
+    return iadd(iadd(row, half), imul(i, iall(HAIRLUT_CELL)));
 }
 
-/* hairlut_axis_knot, whose fold is a subtraction here */
+/* hairlut_axis_stretch */
+static inline real stretch(const hairlut_axis *axis, real y)
+{
+    return axis->warp == HAIRLUT_WARP_QUARTIC ? mul(y, mul(y, y)) : all(1.0f);
+}
+
+/* hairlut_axis_knot, but for the offset: the cell, counted from the nearer end */
 static inline whole find_knot(const hairlut_axis *axis, real u, real *f, real *du)
 {
     const real m = larger(smaller(u, sub(all(1.0f), u)), all(0.0f));
     const real y = axis->warp == HAIRLUT_WARP_QUARTIC ? root(root(add(m, all(axis->e)))) : m;
     const real c = mul(sub(y, all(axis->f0)), all(axis->inverse_k));
-    const mask upper = greater(u, all(0.5f));
     const whole i = truncated(c);
-    const real part = sub(c, converted(i));
-    *f = choose(upper, sub(all(1.0f), part), part);
-    *du = du_dcolumn(axis, y);
-    return ichoose(upper, isub(iall(axis->columns - 2), i), i);
+    *f = sub(c, converted(i));
+    *du = mul(all(axis->du), stretch(axis, y));
+    return i;
 }
 
 static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, places *p)
 {
     for (size_t s = 0; s < n; s += LANES) {
         real t, f, du;
-        const whole row = find_rows(axis, load(theta_r + s), &t);
-        istore(p->at + s, iadd(row, find_knot(axis, load(u + s), &f, &du)));
+        const real number = load(u + s);
+        const whole j = find_row(axis, load(theta_r + s), &t), i = find_knot(axis, number, &f, &du);
+        istore(p->at + s, cell_offset(axis, j, i, greater(number, all(0.5f))));
         store(p->t + s, t);
         store(p->f + s, f);
         store(p->du + s, du);
@@ -100,108 +106,135 @@ static inline void place(const hairlut_axis *axis, size_t n, const float *theta_
 /* hairlut_axis_cell */
 static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
 {
-    real a[4], b[4];
-    gather4(axis->rows, at, a);
-    gather4(axis->rows + axis->stride, at, b);
+    real a[HAIRLUT_CELL], b[HAIRLUT_CELL];
+    gather4(axis->cells, at, a);
+    gather4(axis->cells + axis->pitch, at, b);
     const real s = sub(all(1.0f), t);
-    const real before = blend_width(sub(a[1], a[0]), sub(b[1], b[0]), s, t);
-    const real after = blend_width(sub(a[3], a[2]), sub(b[3], b[2]), s, t);
-    cells cell;
-    cell.x0 = add(a[1], mul(t, sub(b[1], a[1])));
-    cell.d = blend_width(sub(a[2], a[1]), sub(b[2], b[1]), s, t);
-    const real bound = mul(all(axis->limit), cell.d);
-    cell.c = clamp(mul(all(0.25f), sub(before, after)), sub(all(-0.0f), bound), bound);
+    const cells cell = {add(mul(s, a[0]), mul(t, b[0])), add(mul(s, a[1]), mul(t, b[1])), add(mul(s, a[2]), mul(t, b[2]))};
     return cell;
 }
 
 /* hairlut_axis_sample at the places of samples s .. s+LANES-1 */
 static inline real draw(const hairlut_axis *axis, const places *p, size_t s, real *pdf)
 {
-    const real f = load(p->f + s);
+    const real f = load(p->f + s), rest = sub(all(1.0f), f);
     const cells cell = load_cells(axis, p->at + s, load(p->t + s));
-    const real x = add(cell.x0, mul(f, add(cell.d, mul(cell.c, sub(all(1.0f), f)))));
-    const real slope = add(cell.d, mul(cell.c, sub(all(1.0f), mul(all(2.0f), f))));
+    const real x = add(cell.x0, mul(f, add(cell.d, mul(cell.c, rest))));
+    const real slope = magnitude(add(cell.d, mul(cell.c, sub(rest, f))));
     *pdf = over(load(p->du + s), slope);
-    return smaller(x, all(axis->high));
+    return clamp(x, all(axis->low), all(axis->high));
 }
 
-/* hairlut_axis_find up to the pivots: the first cell after the last pivot that is at most x */
+/* hairlut_axis_find up to the pivots: the first cell of the block, and the offset of its first texel */
 static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q)
 {
-    for (size_t k = 0; k < n; ++k)
-        q->cell[k] = axis->step * count(axis->rows + q->row[k] - HAIRLUT_PIVOTS, axis->stride, q->t[k], q->x[k],
-                                        HAIRLUT_PIVOTS);
+    for (size_t k = 0; k < n; ++k) {
+        const int row = q->j[k] * axis->stride;
+        const float *pivots = axis->rows + row - HAIRLUT_PIVOTS;
+        const int first = axis->step * HAIRLUT_COUNT(pivots, axis->stride, q->t[k], q->x[k], HAIRLUT_PIVOTS);
+        q->cell[k] = first;
+        q->at[k] = row + first;
+    }
 }
 
 /* The rest of hairlut_axis_find, one query at a time. */
 static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q)
 {
+    const int last = axis->columns - 2;
     for (size_t k = 0; k < n; ++k) {
-        const float *row = axis->rows + q->row[k];
-        int size = axis->columns - 1 - q->cell[k];
-        size = size < axis->step ? size : axis->step;
-        const int first = hairlut_halve(row, axis->stride, q->t[k], q->x[k], q->cell[k], &size);
-        q->cell[k] = first + count(row + first + 2, axis->stride, q->t[k], q->x[k], size - 1);
+        const float *block = axis->rows + q->at[k];
+        const int cell = q->cell[k] + hairlut_last(block, axis->stride, q->t[k], q->x[k], axis->step);
+        q->cell[k] = cell < last ? cell : last;
     }
 }
 
-/* The same for blocks of at most four cells, whose three inner texels one load brings. */
+/* The same for blocks of four cells, whose texels one load brings. */
 static inline void find_in_small_blocks(const hairlut_axis *axis, size_t n, queries *q)
 {
     for (size_t s = 0; s < n; s += LANES) {
+        const real t = load(q->t + s), x = load(q->x + s);
         const whole first = iload(q->cell + s);
-        const whole size = ismaller(isub(iall(axis->columns - 1), first), iall(axis->step));
-        const real inner = converted(isub(size, iall(1))), t = load(q->t + s), x = load(q->x + s);
-        int at[LANES];
+        whole cell = isub(first, iall(1));
         real a[4], b[4];
-        istore(at, iadd(first, iload(q->row + s)));
-        gather4(axis->rows + 2, at, a);
-        gather4(axis->rows + 2 + axis->stride, at, b);
-        whole cell = first;
-        for (int k = 0; k < 3; ++k) {
+        gather4(axis->rows, q->at + s, a);
+        gather4(axis->rows + axis->stride, q->at + s, b);
+        for (int k = 0; k < 4; ++k) {
             const mask below = at_least(x, add(a[k], mul(t, sub(b[k], a[k]))));
-            cell = ichoose(both(below, greater(inner, all((float)k))), iadd(cell, iall(1)), cell);
+            cell = ichoose(below, iadd(cell, iall(1)), cell);
         }
-        istore(q->cell + s, cell);
+        istore(q->cell + s, ismaller(ilarger(cell, first), iall(axis->columns - 2)));
     }
 }
 
-static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q)
+/* hairlut_axis_found, but for the cell itself */
+static inline void turn_to_nearer_end(const hairlut_axis *axis, size_t n, queries *q)
+{
+    for (size_t s = 0; s < n; s += LANES) {
+        const whole found = iload(q->cell + s);
+        const mask high = at_least(converted(found), all((float)(axis->columns / 2)));
+        const whole i = ichoose(high, isub(iall(axis->columns - 2), found), found);
+        istore(q->cell + s, i);
+        istore(q->at + s, cell_offset(axis, iload(q->j + s), i, high));
+    }
+}
+
+/* Loads the cells that were found, in a pass of its own: the arithmetic of a density is long enough. */
+static inline void load_found(const hairlut_axis *axis, size_t n, const queries *q, block_of_cells *found)
+{
+    for (size_t s = 0; s < n; s += LANES) {
+        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
+        store(found->x0 + s, cell.x0);
+        store(found->d + s, cell.d);
+        store(found->c + s, cell.c);
+    }
+}
+
+static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q, block_of_cells *found)
 {
     find_blocks(axis, n, q);
-    if (axis->step <= 4)
+    if (axis->step == 4)
         find_in_small_blocks(axis, n, q);
     else
         find_in_blocks(axis, n, q);
+    turn_to_nearer_end(axis, n, q);
+    load_found(axis, n, q, found);
 }
 
-static inline void ask_rows(const hairlut_axis *axis, size_t n, const float *theta_r, queries *q)
+/* Asks for x, moved into the domain: the search is for what a row holds, not for infinity. */
+static inline void ask(const hairlut_axis *axis, real theta_r, real x, queries *q, size_t s)
 {
-    for (size_t s = 0; s < n; s += LANES) {
-        real t;
-        istore(q->row + s, find_rows(axis, load(theta_r + s), &t));
-        store(q->t + s, t);
-    }
+    const real low = all(axis->low), high = all(axis->high);
+    real t;
+    istore(q->j + s, find_row(axis, theta_r, &t));
+    store(q->t + s, t);
+    store(q->x + s, clamp(x, low, high));
+    store(q->du + s, choose(both(at_least(x, low), at_least(high, x)), all(axis->du), all(0.0f)));
 }
 
-/* hairlut_cell_solve and the end of hairlut_axis_pdf */
-static inline real density(const hairlut_axis *axis, const queries *q, size_t s)
+/* hairlut_cell_solve; *slope gets |dx/df| */
+static inline real solve(cells cell, real x, real *slope)
 {
-    const real x = load(q->x + s), one = all(1.0f);
+    const mask falls = greater(all(0.0f), cell.d);
+    const real d = magnitude(cell.d), c = choose(falls, sub(all(-0.0f), cell.c), cell.c), bend = magnitude(c);
+    const real distance = clamp(choose(falls, sub(cell.x0, x), sub(x, cell.x0)), all(0.0f), d);
+    const real flat = sub(d, bend);
+    const real away = choose(greater(c, all(0.0f)), sub(d, distance), distance);
+    *slope = root(add(mul(flat, flat), mul(mul(all(4.0f), bend), away)));
+    return smaller(over(mul(all(2.0f), distance), add(add(d, c), *slope)), all(1.0f));
+}
+
+/* hairlut_axis_pdf */
+static inline real density(const hairlut_axis *axis, const queries *q, const block_of_cells *found, size_t s)
+{
+    const real x = load(q->x + s);
     const whole i = iload(q->cell + s);
-    int at[LANES];
-    istore(at, iadd(iload(q->row + s), i));
-    const cells cell = load_cells(axis, at, load(q->t + s));
-    const real d = clamp(sub(x, cell.x0), all(0.0f), cell.d);
-    const real bend = magnitude(cell.c), flat = sub(cell.d, bend);
-    const real away = choose(greater(cell.c, all(0.0f)), sub(cell.d, d), d);
-    const real slope = root(add(mul(flat, flat), mul(mul(all(4.0f), bend), away)));
-    const real f = smaller(over(mul(all(2.0f), d), add(add(cell.d, cell.c), slope)), one);
-    const real low = add(converted(i), f);
-    const real high = add(converted(isub(iall(axis->columns - 2), i)), sub(one, f));
-    const real y = add(all(axis->f0), mul(all(axis->k), smaller(low, high)));
-    const real pdf = over(du_dcolumn(axis, y), slope);
-    return choose(both(at_least(x, all(axis->low)), at_least(all(axis->high), x)), pdf, all(0.0f));
+    const cells cell = {load(found->x0 + s), load(found->d + s), load(found->c + s)};
+    real slope;
+    const real k = all(axis->k), part = mul(k, solve(cell, x, &slope));
+    const real near_end = add(all(axis->f0), mul(k, converted(i)));
+    const real far_end = add(all(axis->f0), mul(k, converted(isub(iall(axis->columns - 1), i))));
+    const real y = smaller(add(near_end, part), sub(far_end, part));
+    return mul(stretch(axis, y), over(load(q->du + s), slope));
 }
 
 /* phi less n turns; low where that is not in [low, low + 2 pi) */
@@ -214,9 +247,11 @@ static inline real less_turns(real phi, real n, float low)
 /* hairlut_wrap */
 static inline real wrap(real phi, float low)
 {
+    const mask inside = both(at_least(phi, all(low)), greater(all(low + hairlut_two_pi), phi));
     const real x = mul(sub(phi, all(low)), all(hairlut_inverse_two_pi));
     const real towards_zero = choose(greater(all(8388608.0f), magnitude(x)), converted(truncated(x)), x);
-    return less_turns(phi, sub(towards_zero, choose(greater(towards_zero, x), all(1.0f), all(0.0f))), low);
+    const real turns = sub(towards_zero, choose(greater(towards_zero, x), all(1.0f), all(0.0f)));
+    return choose(inside, phi, less_turns(phi, turns, low));
 }
 
 /* hairlut_wrap_once */
@@ -232,10 +267,9 @@ static inline real cosine(real theta)
     const real z = larger(add(sub(all(hairlut_half_pi_high), magnitude(theta)), all(hairlut_half_pi_low)),
                           all(-hairlut_half_pi_low));
     const real w = mul(z, z);
-    real p = all(hairlut_sine[0]);
-    for (int k = 1; k < HAIRLUT_SINE_TERMS; ++k)
-        p = add(all(hairlut_sine[k]), mul(w, p));
-    return mul(z, p);
+    const real low = add(all(hairlut_sine[0]), mul(all(hairlut_sine[1]), w));
+    const real high = add(all(hairlut_sine[2]), mul(all(hairlut_sine[3]), w));
+    return add(z, mul(mul(z, w), add(low, mul(mul(w, w), high))));
 }
 
 /* hairlut_known */
@@ -305,16 +339,17 @@ static inline real where_known(const float *const in[4], size_t s, real pdf)
 static inline void pdf_direct_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta, phi;
-    ask_rows(&model->direct_theta, n, in[0], &theta);
-    ask_rows(&model->direct_phi, n, in[0], &phi);
+    block_of_cells theta_cells, phi_cells;
     for (size_t s = 0; s < n; s += LANES) {
-        store(theta.x + s, load(in[2] + s));
-        store(phi.x + s, relative_azimuth(model, load(in[1] + s), load(in[3] + s)));
+        const real theta_r = load(in[0] + s);
+        ask(&model->direct_theta, theta_r, load(in[2] + s), &theta, s);
+        ask(&model->direct_phi, theta_r, relative_azimuth(model, load(in[1] + s), load(in[3] + s)), &phi, s);
     }
-    find_cells(&model->direct_theta, n, &theta);
-    find_cells(&model->direct_phi, n, &phi);
+    find_cells(&model->direct_theta, n, &theta, &theta_cells);
+    find_cells(&model->direct_phi, n, &phi, &phi_cells);
     for (size_t s = 0; s < n; s += LANES) {
-        const real pdf = mul(density(&model->direct_theta, &theta, s), density(&model->direct_phi, &phi, s));
+        const real pdf = mul(density(&model->direct_theta, &theta, &theta_cells, s),
+                             density(&model->direct_phi, &phi, &phi_cells, s));
         store(out + s, where_known(in, s, pdf));
     }
 }
@@ -322,12 +357,12 @@ static inline void pdf_direct_block(const hairlut_model *model, size_t n, const 
 static inline void pdf_multiple_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta;
-    ask_rows(&model->multiple_theta, n, in[0], &theta);
+    block_of_cells theta_cells;
     for (size_t s = 0; s < n; s += LANES)
-        store(theta.x + s, load(in[2] + s));
-    find_cells(&model->multiple_theta, n, &theta);
+        ask(&model->multiple_theta, load(in[0] + s), load(in[2] + s), &theta, s);
+    find_cells(&model->multiple_theta, n, &theta, &theta_cells);
     for (size_t s = 0; s < n; s += LANES) {
-        const real pdf = density(&model->multiple_theta, &theta, s);
+        const real pdf = density(&model->multiple_theta, &theta, &theta_cells, s);
         store(out + s, where_known(in, s, mul(pdf, all(hairlut_inverse_two_pi))));
     }
 }

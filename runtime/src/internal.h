@@ -6,15 +6,38 @@
 
 #include "hairlut.h"
 
-/* A stored row: the pivots of the search for a cell; one texel before the first, the texels, one after the last, so that
- * the four texels around any cell are adjacent (luts/FORMAT.md, "Padding"); what fills it up to whole cache lines. Pivot
- * k is texel (k+1)*step, or HAIRLUT_NO_TEXEL where that is beyond the last cell. A line follows the last row, because
- * kernels read whole vectors. */
+/* A stored table is its rows, which find the cell of an angle, and its cells, which a sample and a density are taken from.
+ * Both repeat the last row, so that theta_r at the end of its range has a row above it.
+ *
+ * A stored row: the pivots of the search for a cell; the texels; HAIRLUT_NO_TEXEL up to whole blocks and whole cache lines.
+ * Pivot k is texel (k+1)*step, which begins a block of `step` cells, or HAIRLUT_NO_TEXEL where that is beyond the last cell.
+ * A line follows the last row, because kernels read whole vectors. */
 enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
 #define HAIRLUT_NO_TEXEL FLT_MAX
-#define HAIRLUT_STRIDE(columns) (((columns) + 2 + HAIRLUT_PIVOTS + HAIRLUT_LINE - 1) / HAIRLUT_LINE * HAIRLUT_LINE)
-#define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * (height) + HAIRLUT_LINE)
-#define HAIRLUT_STEP(columns) (((columns) - 2 + HAIRLUT_PIVOTS) / HAIRLUT_PIVOTS)
+#define HAIRLUT_WHOLE(n, size) (((n) + (size) - 1) / (size) * (size))
+/* The least power of two, from 4 on, of which 17 blocks hold all cells; a side is at most 4096. */
+#define HAIRLUT_FITS(columns, step) ((columns) - 1 <= (HAIRLUT_PIVOTS + 1) * (step))
+#define HAIRLUT_STEP(columns)                                                                                         \
+    (HAIRLUT_FITS(columns, 4)     ? 4                                                                                 \
+     : HAIRLUT_FITS(columns, 8)   ? 8                                                                                 \
+     : HAIRLUT_FITS(columns, 16)  ? 16                                                                                \
+     : HAIRLUT_FITS(columns, 32)  ? 32                                                                                \
+     : HAIRLUT_FITS(columns, 64)  ? 64                                                                                \
+     : HAIRLUT_FITS(columns, 128) ? 128                                                                               \
+                                  : 256)
+#define HAIRLUT_STRIDE(columns) (HAIRLUT_PIVOTS + HAIRLUT_WHOLE(HAIRLUT_WHOLE(columns, HAIRLUT_STEP(columns)), HAIRLUT_LINE))
+#define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * ((height) + 1) + HAIRLUT_LINE)
+
+/* A cell of one row, seen from the end of the row that is nearer: at the fraction f of the way across,
+ *
+ *     x = x0 + f (d + c (1-f)),
+ *
+ * where d < 0 if the high end is the nearer one. A row of cells is its low half, from the low end on, and its high half,
+ * from the high end on: a sample, whose place is counted from the nearer end, needs no mirroring. Both halves go one cell
+ * beyond u = 1/2. A cell is x0, d, c and a float that nobody reads: one load of 16 bytes, never across cache lines. */
+enum { HAIRLUT_CELL = 4 /* floats */ };
+#define HAIRLUT_HALF(columns) (HAIRLUT_CELL * ((columns) / 2 + 1)) /* floats */
+#define HAIRLUT_CELLS(columns, height) (2 * HAIRLUT_HALF(columns) * ((height) + 1))
 
 #if defined(__GNUC__)
 #define HAIRLUT_LINE_ALIGNED __attribute__((aligned(64)))
@@ -26,33 +49,35 @@ enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
 
 /* A table ready for sampling. */
 typedef struct hairlut_axis {
-    const float *rows; /* the texel before the first of row 0; best if the row's pivots are aligned to a cache line */
-    int columns;
-    int height;
-    int stride; /* floats from one row to the next */
-    int step;   /* cells between two pivots */
-    int warp;   /* hairlut_warp */
+    const float *rows; /* the first texel of row 0; best if its pivots are aligned to a cache line */
+    const float *cells; /* the first cell of row 0; best if aligned to a cell's size */
+    ptrdiff_t pitch;  /* floats from one row of cells to the next */
+    ptrdiff_t half;   /* floats from the low to the high half */
     float row_origin; /* theta_r of row 0 */
     float row_scale;  /* rows per radian of theta_r */
     float row_last;   /* height - 1 */
-    float low;        /* the domain */
-    float high;
-    float e; /* quartic warp: y = (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column, dm/dc = du y^3 */
-    float f0; /* sqrtf(sqrtf(e)), rounded as when a sample is drawn */
-    float k; /* uniform warp: m = k c, dm/dc = du */
+    int warp;  /* hairlut_warp */
+    float e;   /* quartic warp: y = (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column, dm/dc = du y^3 */
+    float f0;  /* sqrtf(sqrtf(e)), rounded as when a sample is drawn */
+    float k;   /* uniform warp: m = k c, dm/dc = du */
     float inverse_k;
     float du;
-    float limit;  /* of a cell's curvature, relative to its width */
+    float low; /* the domain */
+    float high;
+    int columns;
+    int height;
+    int stride; /* floats from one row to the next */
+    int step;   /* cells of a block, from one pivot to the next */
 } hairlut_axis;
 
 /* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. `stored`
- * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats. */
-#define HAIRLUT_AXIS(stored, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_, limit_)      \
+ * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats. */
+#define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)       \
     {                                                                                                                 \
-        (stored) + HAIRLUT_PIVOTS, columns_, height_, HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_), warp_,        \
-            row_origin_, row_scale_,                                                                                  \
-            (float)((height_) - 1), low_, high_, e_, f0_, k_, 1.0f / (k_),                                            \
-            (warp_) == HAIRLUT_WARP_QUARTIC ? 4.0f * (k_) : (k_), limit_                                              \
+        (stored) + HAIRLUT_PIVOTS, cells, 2 * HAIRLUT_HALF(columns_), HAIRLUT_HALF(columns_), row_origin_, row_scale_, \
+            (float)((height_) - 1), warp_, e_, f0_, k_, 1.0f / (k_),                                                  \
+            (warp_) == HAIRLUT_WARP_QUARTIC ? 4.0f * (k_) : (k_), low_, high_, columns_, height_,                     \
+            HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                                          \
     }
 
 struct hairlut_model {

@@ -101,43 +101,75 @@ hairlut_result hairlut_validate(const hairlut_table *table, char *message)
     return result;
 }
 
-/* A row as internal.h lays it out. The texels beyond both ends are such that a blended end cell takes the curvature
- * d - d_neighbour. */
+/* A row as internal.h lays it out. */
 static void store_row(float *stored, const float *row, int width)
 {
     for (int k = 0; k < HAIRLUT_PIVOTS; ++k) {
         const int i = (k + 1) * HAIRLUT_STEP(width);
         stored[k] = i <= width - 2 ? row[i] : HAIRLUT_NO_TEXEL;
     }
-    float *padded = stored + HAIRLUT_PIVOTS;
-    memcpy(padded + 1, row, (size_t)width * sizeof *row);
-    const double first = row[0], second = row[1], third = row[2];
-    const double last = row[width - 1], last1 = row[width - 2], last2 = row[width - 3];
-    padded[0] = (float)(first - 4.0 * (second - first) + 3.0 * (third - second));
-    padded[width + 1] = (float)(last + 4.0 * (last - last1) - 3.0 * (last1 - last2));
-    for (int k = HAIRLUT_PIVOTS + width + 2; k < HAIRLUT_STRIDE(width); ++k)
-        stored[k] = 0.0f;
+    memcpy(stored + HAIRLUT_PIVOTS, row, (size_t)width * sizeof *row);
+    for (int k = HAIRLUT_PIVOTS + width; k < HAIRLUT_STRIDE(width); ++k)
+        stored[k] = HAIRLUT_NO_TEXEL;
 }
 
-static size_t stored_floats(const hairlut_table *t)
+/* The curvature of cell i (luts/FORMAT.md, "Reading", step 3): from the widths of both neighbours, or of the one that there
+ * is. */
+static float curvature(const float *row, int width, int i, float limit)
+{
+    const float d = row[i + 1] - row[i], bound = limit * d;
+    const int first = i == 0, last = i == width - 2;
+    const float before = first ? d : row[i] - row[i - 1], after = last ? d : row[i + 2] - row[i + 1];
+    const float c = (first || last ? 1.0f : 0.25f) * (before - after);
+    return c < -bound ? -bound : c > bound ? bound : c;
+}
+
+static void store_cell(float *stored, float x0, float d, float c)
+{
+    stored[0] = x0;
+    stored[1] = d;
+    stored[2] = c;
+    stored[3] = 0.0f;
+}
+
+static void store_cells(float *stored, const float *row, int width, float limit)
+{
+    for (int k = 0; k < HAIRLUT_HALF(width) / HAIRLUT_CELL; ++k, stored += HAIRLUT_CELL) {
+        const int h = width - 2 - k;
+        store_cell(stored, row[k], row[k + 1] - row[k], curvature(row, width, k, limit));
+        store_cell(stored + HAIRLUT_HALF(width), row[h + 1], row[h] - row[h + 1], curvature(row, width, h, limit));
+    }
+}
+
+/* Floats in memory, whole cache lines */
+static size_t rows_floats(const hairlut_table *t)
 {
     return (size_t)HAIRLUT_STORED(t->width, t->height);
 }
 
-/* Fills an axis whose rows go to `rows`; returns the end of what it filled. */
-static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *rows)
+static size_t cells_floats(const hairlut_table *t)
 {
+    return (size_t)HAIRLUT_WHOLE(HAIRLUT_CELLS(t->width, t->height), HAIRLUT_LINE);
+}
+
+/* Fills an axis whose rows and cells go to `memory`; returns the end of what it filled. */
+static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *memory)
+{
+    float *rows = memory, *cells = memory + rows_floats(t);
     const hairlut_warp_scale scale = hairlut_scale_warp(t->warp, t->warp_e, t->width);
     const float row_scale = (float)((t->height - 1) / ((double)t->theta_r_max - (double)t->theta_r_min));
     const hairlut_axis filled =
-        HAIRLUT_AXIS(rows, t->width, t->height, t->theta_r_min, row_scale, t->domain_min, t->domain_max, (int)t->warp,
-                     (float)scale.e, sqrtf(sqrtf((float)scale.e)), (float)scale.k, t->cell_limit);
+        HAIRLUT_AXIS(rows, cells, t->width, t->height, t->theta_r_min, row_scale, t->domain_min, t->domain_max, (int)t->warp,
+                     (float)scale.e, sqrtf(sqrtf((float)scale.e)), (float)scale.k);
     *axis = filled;
-    for (int j = 0; j < t->height; ++j)
-        store_row(rows + (size_t)j * (size_t)axis->stride, t->texels + (size_t)j * (size_t)t->width, t->width);
-    for (size_t k = stored_floats(t) - HAIRLUT_LINE; k < stored_floats(t); ++k)
-        rows[k] = 0.0f;
-    return rows + stored_floats(t);
+    for (int j = 0; j <= t->height; ++j) {
+        const float *row = t->texels + (size_t)(j < t->height ? j : t->height - 1) * (size_t)t->width;
+        store_row(rows + (size_t)j * (size_t)axis->stride, row, t->width);
+        store_cells(cells + j * axis->pitch, row, t->width, t->cell_limit);
+    }
+    for (int k = 1; k <= HAIRLUT_LINE; ++k)
+        cells[-k] = 0.0f;
+    return cells + cells_floats(t);
 }
 
 static hairlut_result validate_all(const hairlut_model_desc *desc, char *message)
@@ -182,19 +214,21 @@ hairlut_result hairlut_model_create(const hairlut_model_desc *desc, const hairlu
         result = validate_all(desc, message);
     if (result != HAIRLUT_OK)
         return result;
-    const size_t floats = stored_floats(&desc->direct_theta) + stored_floats(&desc->direct_phi)
-                          + stored_floats(&desc->multiple_theta);
-    /* one block: the struct, then the rows from the next cache line on */
+    const hairlut_table *tables[3] = {&desc->direct_theta, &desc->direct_phi, &desc->multiple_theta};
+    size_t floats = 0;
+    for (int k = 0; k < 3; ++k)
+        floats += rows_floats(tables[k]) + cells_floats(tables[k]);
+    /* one block: the struct, then the tables from the next cache line on */
     const size_t line = HAIRLUT_LINE * sizeof(float);
     void *memory;
     result = hairlut_allocate(&a, sizeof(hairlut_model) + line + floats * sizeof(float), &memory, message);
     if (result != HAIRLUT_OK)
         return result;
     hairlut_model *model = memory;
-    float *rows = (float *)(model + 1) + (line - (uintptr_t)(model + 1) % line) % line / sizeof(float);
-    rows = build_axis(&model->direct_theta, &desc->direct_theta, rows);
-    rows = build_axis(&model->direct_phi, &desc->direct_phi, rows);
-    build_axis(&model->multiple_theta, &desc->multiple_theta, rows);
+    float *next = (float *)(model + 1) + (line - (uintptr_t)(model + 1) % line) % line / sizeof(float);
+    next = build_axis(&model->direct_theta, tables[0], next);
+    next = build_axis(&model->direct_phi, tables[1], next);
+    build_axis(&model->multiple_theta, tables[2], next);
     model->azimuth = desc->azimuth;
     model->allocator = a;
     *out = model;

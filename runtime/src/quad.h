@@ -32,11 +32,10 @@ typedef __m128i hairlut_tally; /* four counters */
 
 static inline hairlut_tally hairlut_tally_zero(void) { return _mm_setzero_si128(); }
 
-/* Counts those of the first n lanes that are at most x. */
-static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x, int n)
+/* Counts the lanes that are at most x. */
+static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
 {
-    const __m128i inside = _mm_cmplt_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(n));
-    return _mm_sub_epi32(tally, _mm_and_si128(inside, _mm_castps_si128(_mm_cmple_ps(a, _mm_set1_ps(x)))));
+    return _mm_sub_epi32(tally, _mm_castps_si128(_mm_cmple_ps(a, _mm_set1_ps(x))));
 }
 
 static inline int hairlut_tally_sum(hairlut_tally a)
@@ -65,11 +64,9 @@ typedef uint32x4_t hairlut_tally;
 
 static inline hairlut_tally hairlut_tally_zero(void) { return vdupq_n_u32(0); }
 
-static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x, int n)
+static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
 {
-    static const int index[4] = {0, 1, 2, 3};
-    const uint32x4_t inside = vcltq_s32(vld1q_s32(index), vdupq_n_s32(n));
-    return vsubq_u32(tally, vandq_u32(inside, vcleq_f32(a, vdupq_n_f32(x))));
+    return vsubq_u32(tally, vcleq_f32(a, vdupq_n_f32(x)));
 }
 
 static inline int hairlut_tally_sum(hairlut_tally a) { return (int)vaddvq_u32(a); }
@@ -122,10 +119,10 @@ typedef int hairlut_tally;
 
 static inline hairlut_tally hairlut_tally_zero(void) { return 0; }
 
-static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x, int n)
+static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
 {
     for (int l = 0; l < 4; ++l)
-        tally += (a.lane[l] <= x) & (l < n);
+        tally += a.lane[l] <= x;
     return tally;
 }
 

@@ -32,6 +32,7 @@ static inline whole iall(int a) { return _mm256_set1_epi32(a); }
 static inline whole iadd(whole a, whole b) { return _mm256_add_epi32(a, b); }
 static inline whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
 static inline whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
+static inline whole ilarger(whole a, whole b) { return _mm256_max_epi32(a, b); }
 static inline whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
 static inline whole ichoose(mask m, whole a, whole b) { return _mm256_blendv_epi8(b, a, _mm256_castps_si256(m)); }
 static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
@@ -53,7 +54,7 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(b, d));
 }
 
-#define HAIRLUT_SEARCH
+#define HAIRLUT_COUNT count_at_most
 static inline unsigned below(const float *a, int stride, float t, float x)
 {
     const real low = load(a), high = load(a + stride);
@@ -61,7 +62,7 @@ static inline unsigned below(const float *a, int stride, float t, float x)
     return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(blend, all(x), _CMP_LE_OQ));
 }
 
-static inline int count(const float *a, int stride, float t, float x, int n)
+static inline int count_at_most(const float *a, int stride, float t, float x, int n)
 {
     const unsigned bits = below(a, stride, t, x) | below(a + 8, stride, t, x) << 8;
     return _mm_popcnt_u32(_bzhi_u32(bits, (unsigned)n));

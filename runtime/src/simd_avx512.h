@@ -1,65 +1,66 @@
-/* Sixteen lanes of AVX-512 for batch_kernel.h, which says what each operation must do. */
+/* Eight lanes of AVX-512 for batch_kernel.h, which says what each operation must do. Eight and not sixteen: most of the work
+ * is loading and sorting cells, for which vectors of 256 bits have three ports and those of 512 bits two. */
 #ifndef HAIRLUT_SIMD_AVX512_H
 #define HAIRLUT_SIMD_AVX512_H
 
 #include <immintrin.h>
 
-typedef __m512 real;
-typedef __m512i whole;
-typedef __mmask16 mask;
-enum { LANES = 16 };
+typedef __m256 real;
+typedef __m256i whole;
+typedef __mmask8 mask;
+enum { LANES = 8 };
 
-static inline real load(const float *p) { return _mm512_loadu_ps(p); }
-static inline void store(float *p, real a) { _mm512_storeu_ps(p, a); }
-static inline real all(float a) { return _mm512_set1_ps(a); }
-static inline real add(real a, real b) { return _mm512_add_ps(a, b); }
-static inline real sub(real a, real b) { return _mm512_sub_ps(a, b); }
-static inline real mul(real a, real b) { return _mm512_mul_ps(a, b); }
-static inline real over(real a, real b) { return _mm512_div_ps(a, b); }
-static inline real root(real a) { return _mm512_sqrt_ps(a); }
-static inline real smaller(real a, real b) { return _mm512_min_ps(a, b); }
-static inline real larger(real a, real b) { return _mm512_max_ps(a, b); }
-static inline real magnitude(real a) { return _mm512_abs_ps(a); }
-static inline mask greater(real a, real b) { return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ); }
-static inline mask at_least(real a, real b) { return _mm512_cmp_ps_mask(a, b, _CMP_GE_OQ); }
-static inline mask numbers(real a, real b) { return _mm512_cmp_ps_mask(a, b, _CMP_ORD_Q); }
+static inline real load(const float *p) { return _mm256_loadu_ps(p); }
+static inline void store(float *p, real a) { _mm256_storeu_ps(p, a); }
+static inline real all(float a) { return _mm256_set1_ps(a); }
+static inline real add(real a, real b) { return _mm256_add_ps(a, b); }
+static inline real sub(real a, real b) { return _mm256_sub_ps(a, b); }
+static inline real mul(real a, real b) { return _mm256_mul_ps(a, b); }
+static inline real over(real a, real b) { return _mm256_div_ps(a, b); }
+static inline real root(real a) { return _mm256_sqrt_ps(a); }
+static inline real smaller(real a, real b) { return _mm256_min_ps(a, b); }
+static inline real larger(real a, real b) { return _mm256_max_ps(a, b); }
+static inline real magnitude(real a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
+static inline mask greater(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_GT_OQ); }
+static inline mask at_least(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_GE_OQ); }
+static inline mask numbers(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_ORD_Q); }
 static inline mask both(mask a, mask b) { return (mask)(a & b); }
-static inline real choose(mask m, real a, real b) { return _mm512_mask_blend_ps(m, b, a); }
+static inline real choose(mask m, real a, real b) { return _mm256_mask_blend_ps(m, b, a); }
 
-static inline whole iload(const int *p) { return _mm512_loadu_si512(p); }
-static inline void istore(int *p, whole a) { _mm512_storeu_si512(p, a); }
-static inline whole iall(int a) { return _mm512_set1_epi32(a); }
-static inline whole iadd(whole a, whole b) { return _mm512_add_epi32(a, b); }
-static inline whole isub(whole a, whole b) { return _mm512_sub_epi32(a, b); }
-static inline whole ismaller(whole a, whole b) { return _mm512_min_epi32(a, b); }
-static inline whole imul(whole a, whole b) { return _mm512_madd_epi16(a, b); }
-static inline whole ichoose(mask m, whole a, whole b) { return _mm512_mask_blend_epi32(m, b, a); }
-static inline whole truncated(real a) { return _mm512_cvttps_epi32(a); }
-static inline real converted(whole a) { return _mm512_cvtepi32_ps(a); }
+static inline whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
+static inline void istore(int *p, whole a) { _mm256_storeu_si256((__m256i *)p, a); }
+static inline whole iall(int a) { return _mm256_set1_epi32(a); }
+static inline whole iadd(whole a, whole b) { return _mm256_add_epi32(a, b); }
+static inline whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
+static inline whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
+static inline whole ilarger(whole a, whole b) { return _mm256_max_epi32(a, b); }
+static inline whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
+static inline whole ichoose(mask m, whole a, whole b) { return _mm256_mask_blend_epi32(m, b, a); }
+static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
+static inline real converted(whole a) { return _mm256_cvtepi32_ps(a); }
 
 static inline real quads(const float *p, const int *at)
 {
-    const real a = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_loadu_ps(p + at[0])), _mm_loadu_ps(p + at[4]), 1);
-    return _mm512_insertf32x4(_mm512_insertf32x4(a, _mm_loadu_ps(p + at[8]), 2), _mm_loadu_ps(p + at[12]), 3);
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + at[0])), _mm_loadu_ps(p + at[4]), 1);
 }
 
 static inline void gather4(const float *p, const int *at, real x[4])
 {
     const real r0 = quads(p, at), r1 = quads(p, at + 1), r2 = quads(p, at + 2), r3 = quads(p, at + 3);
-    const __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(r0, r1)), b = _mm512_castps_pd(_mm512_unpackhi_ps(r0, r1));
-    const __m512d c = _mm512_castps_pd(_mm512_unpacklo_ps(r2, r3)), d = _mm512_castps_pd(_mm512_unpackhi_ps(r2, r3));
-    x[0] = _mm512_castpd_ps(_mm512_unpacklo_pd(a, c));
-    x[1] = _mm512_castpd_ps(_mm512_unpackhi_pd(a, c));
-    x[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(b, d));
-    x[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(b, d));
+    const __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(r0, r1)), b = _mm256_castps_pd(_mm256_unpackhi_ps(r0, r1));
+    const __m256d c = _mm256_castps_pd(_mm256_unpacklo_ps(r2, r3)), d = _mm256_castps_pd(_mm256_unpackhi_ps(r2, r3));
+    x[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(a, c));
+    x[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(a, c));
+    x[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(b, d));
+    x[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(b, d));
 }
 
-#define HAIRLUT_SEARCH
-static inline int count(const float *a, int stride, float t, float x, int n)
+#define HAIRLUT_COUNT count_at_most
+static inline int count_at_most(const float *a, int stride, float t, float x, int n)
 {
-    const real low = load(a), high = load(a + stride);
-    const real blend = add(low, mul(all(t), sub(high, low)));
-    const unsigned below = _mm512_cmp_ps_mask(blend, all(x), _CMP_LE_OQ);
+    const __m512 low = _mm512_loadu_ps(a), high = _mm512_loadu_ps(a + stride);
+    const __m512 blend = _mm512_add_ps(low, _mm512_mul_ps(_mm512_set1_ps(t), _mm512_sub_ps(high, low)));
+    const unsigned below = _mm512_cmp_ps_mask(blend, _mm512_set1_ps(x), _CMP_LE_OQ);
     return _mm_popcnt_u32(_bzhi_u32(below, (unsigned)n));
 }
 

@@ -32,6 +32,7 @@ static inline whole iall(int a) { return vdupq_n_s32(a); }
 static inline whole iadd(whole a, whole b) { return vaddq_s32(a, b); }
 static inline whole isub(whole a, whole b) { return vsubq_s32(a, b); }
 static inline whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
+static inline whole ilarger(whole a, whole b) { return vmaxq_s32(a, b); }
 static inline whole imul(whole a, whole b) { return vmulq_s32(a, b); }
 static inline whole ichoose(mask m, whole a, whole b) { return vbslq_s32(m, a, b); }
 static inline whole truncated(real a) { return vcvtq_s32_f32(a); }

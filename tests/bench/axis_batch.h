@@ -23,12 +23,12 @@ static void axis_pdf(const hairlut_axis *axis, size_t n, const float *theta_r, c
     for (size_t b = 0; b < n; b += BLOCK) {
         const size_t m = n - b < BLOCK ? n - b : BLOCK;
         queries q;
-        ask_rows(axis, m, theta_r + b, &q);
         for (size_t s = 0; s < m; s += LANES)
-            store(q.x + s, load(x + b + s));
-        find_cells(axis, m, &q);
+            ask(axis, load(theta_r + b + s), load(x + b + s), &q, s);
+        block_of_cells found;
+        find_cells(axis, m, &q, &found);
         for (size_t s = 0; s < m; s += LANES)
-            store(pdf + b + s, density(axis, &q, s));
+            store(pdf + b + s, density(axis, &q, &found, s));
     }
 }
 

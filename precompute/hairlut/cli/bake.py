@@ -23,7 +23,7 @@ EXAMPLES = """examples:
   hairlut bake --size 64x64 --out square
   hairlut bake --size 64x64 --warp uniform --cell linear --out baseline
   hairlut bake --model my_hair.py                   lobes of your own (see the module hairlut.modelfile)
-  hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/
+  hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/, or a family from hairlut fit
   parallel hairlut bake --out baked --model ::: hairs/*.py      the same on a queue's machines"""
 
 
@@ -138,7 +138,8 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
 
     if args.jobs < 1:
         raise HairlutError(f"--jobs {args.jobs}: expected 1 or more")
-    sources = batch_bake.model_files([Path(name) for name in names])
+    paths = [Path(name) for name in names]
+    sources, family = batch_bake.model_files(paths), batch_bake.family_file(paths)
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("baking", total=len(sources))
@@ -155,7 +156,11 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
     for outcome in outcomes:
         if outcome.status == "failed":
             print(f"  failed: {outcome.source}")
-    return 1 if counts["failed"] else 0
+    if counts["failed"]:
+        return 1
+    if family:
+        print(batch_bake.copy_family(family, args.out))
+    return 0
 
 
 def passed_on(args: argparse.Namespace) -> list[str]:

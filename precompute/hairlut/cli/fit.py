@@ -1,18 +1,26 @@
 """hairlut fit: from measured, simulated or drawn scattering to model files that hairlut bake takes."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
 from ..decompose import LOBES
 from ..distribution import CELLS, ROWS
 from ..errors import HairlutError
+from ..family import LOBES as FAMILY_LOBES
+from ..offsets import holds_offsets
+
+Report = Callable[[str, float], None]
 
 EXAMPLES = """examples:
   hairlut fit goniometer.csv --out fits
   hairlut fit bsdf_grid.npz --measure solid-angle && hairlut bake --model fits/bsdf_grid_masses.npz
+  hairlut fit offsets.npz && hairlut bake --model fits/offsets --out baked/offsets
 the data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
 CSV, or arrays of these names as npz. A full grid of value is a density; anything else is samples, weighed
-by value."""
+by value. An npz with an array offset (increasing, in [-1, 1]: where across its width the fibre is hit) and a
+value of four axes (offset, theta_r, theta_i, phi) becomes a family: model files for each offset, and a text
+file of their weights, in a directory (see the module hairlut.familyfiles)."""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
@@ -40,6 +48,13 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         default=ROWS,
         help="rows of theta_r that samples are gathered in (default: %(default)s)",
     )
+    parser.add_argument(
+        "--lobes-per-offset",
+        type=int,
+        default=FAMILY_LOBES,
+        metavar="K",
+        help="products of inclination and azimuth at each offset of a family (default: %(default)s)",
+    )
     parser.add_argument("--no-plot", action="store_true", help="write no picture (matplotlib is not needed)")
     return parser
 
@@ -48,29 +63,49 @@ def run(args: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import Progress
 
+    if args.rows < 2:
+        raise HairlutError(f"--rows {args.rows}: expected 2 or more")
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("reading", total=1.0)
+
+        def report(stage: str, share: float) -> None:
+            progress.update(task, description=stage, completed=share)
+
+        said, paths = (_family if holds_offsets(args.data) else _model)(args, report)
+    print(said)
+    print("\n" + "\n".join(map(str, paths)))
+    return 0
+
+
+def _model(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
+    """Both models of one distribution: what to say, and what was written."""
     from ..distribution import read
     from ..fit import fit
     from ..fitfiles import text, write_all
 
-    if args.rows < 2:
-        raise HairlutError(f"--rows {args.rows}: expected 2 or more")
     name = args.name or args.data.stem
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("reading", total=1.0)
-        data = read(args.data, args.measure == "solid-angle", args.rows, CELLS)
-        result = fit(
-            data,
-            args.lobes,
-            report=lambda stage, share: progress.update(task, description=stage, completed=share),
-        )
-        paths = list(write_all(result, args.out, name))
-        if not args.no_plot:
-            progress.update(task, description="plotting", completed=0.0)
-            paths.append(_plot(result, args.out / f"{name}_fit.png", name))
-    print(text(result))
-    print("\n" + "\n".join(map(str, paths)))
-    return 0
+    data = read(args.data, args.measure == "solid-angle", args.rows, CELLS)
+    result = fit(data, args.lobes, report=report)
+    paths = list(write_all(result, args.out, name))
+    if not args.no_plot:
+        report("plotting", 0.0)
+        paths.append(_plot(result, args.out / f"{name}_fit.png", name))
+    return text(result), paths
+
+
+def _family(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
+    """The family of a grid over offsets, likewise."""
+    from ..family import fit_family
+    from ..familyfiles import text, write_family
+    from ..offsets import read
+
+    if args.lobes != "both":
+        raise HairlutError(f"--lobes {args.lobes}: {args.data} has offsets: use --lobes-per-offset")
+    family = fit_family(read(args.data, args.measure == "solid-angle"), args.lobes_per_offset, report)
+    folder = args.out / (args.name or args.data.stem)
+    written = write_family(family, folder)
+    return text(family), [folder, written[-1]]
 
 
 def _plot(result, path: Path, name: str) -> Path:

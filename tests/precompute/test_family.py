@@ -1,0 +1,228 @@
+"""A hair that scatters differently at each offset: its family is found, written, baked and drawn from."""
+
+import csv
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import special, stats
+
+from hairlut import cli, exr, interpolant
+from hairlut.errors import HairlutError
+from hairlut.family import MAX_LOBES, fit_family, nearness
+from hairlut.familyfiles import NAME, contents, model_name
+from hairlut.fit import variance
+from hairlut.offsets import of_grids, read
+
+GAMMA = np.linspace(0, np.pi / 2, 13)
+THETA_R = np.radians(np.arange(-60.0, 61, 20))
+THETA_I, PHI = np.radians(np.arange(-88.0, 89, 4)), np.radians(np.arange(2.5, 360, 5))
+WIDTHS = 0.12, 0.4  # of the two highlights along the fibre, rad
+
+
+def azimuth(phi, centre, kappa=8.0):
+    return np.exp(kappa * (np.cos(phi - centre) - 1)) / (2 * np.pi * special.ive(0, kappa))
+
+
+def share(gamma):
+    """Of the narrow highlight's light."""
+    return 0.7 - 0.4 * np.sin(gamma)
+
+
+def hair(gamma, theta_r=THETA_R):
+    """(offsets, J, n, m) values: a narrow highlight behind the fibre, a broad one mirrored from it."""
+    g, t = gamma[:, None, None, None], theta_r[:, None, None]
+    x = THETA_I[:, None]
+    narrow = stats.norm.pdf(x, -t, WIDTHS[0]) * azimuth(PHI, np.pi - 0.7 * g)
+    broad = stats.norm.pdf(x, 0.1 - t, WIDTHS[1]) * azimuth(PHI, -2 * g)
+    return np.cos(t) * (share(g) * narrow + (1 - share(g)) * broad)
+
+
+@pytest.fixture(scope="module")
+def data():
+    return of_grids(np.sin(GAMMA), THETA_R, THETA_I, PHI, hair(GAMMA))
+
+
+@pytest.fixture(scope="module")
+def family(data):
+    return fit_family(data)
+
+
+def test_both_highlights_are_told_apart(family):
+    middle = (family.data.at[0].theta_edges[1:] + family.data.at[0].theta_edges[:-1]) / 2
+    row = len(THETA_R) // 2
+    for k, width in enumerate(WIDTHS):
+        mean = family.theta[row, k] @ middle
+        assert np.sqrt(family.theta[row, k] @ (middle - mean) ** 2) == pytest.approx(width, rel=0.15)
+    np.testing.assert_allclose(family.weight[:, row, 0], share(GAMMA), atol=0.06)
+
+
+def test_the_masses_are_masses(family):
+    for part in (family.theta, family.phi):
+        assert (part >= 0).all()
+        np.testing.assert_allclose(part.sum(axis=-1), 1.0)
+    np.testing.assert_allclose(family.weight.sum(axis=2), 1.0)
+    np.testing.assert_allclose(family.drawn().sum(axis=(2, 3)), 1.0)
+    np.testing.assert_allclose(family.data.share.sum(axis=0), 1.0)
+
+
+def test_a_family_draws_the_data_and_one_lobe_or_another_offset_does_not(family, data):
+    assert family.variance().max() < 0.02
+    assert fit_family(data, 1).variance().mean() > 0.2
+    turned = replace(family, phi=family.phi[::-1])
+    assert turned.variance().mean() > 1
+
+
+def test_offsets_between_those_of_the_data_cost_less_than_the_fit_says(family):
+    between = (GAMMA[1:] + GAMMA[:-1]) / 2
+    worst = []
+    for gamma in between:
+        o, t = nearness(np.sin(GAMMA), np.sin(gamma))
+        assert (o, t) == (np.searchsorted(GAMMA, gamma) - 1, pytest.approx(0.5))
+        there = of_grids(np.sin([gamma, gamma + 1e-6]), THETA_R, THETA_I, PHI, hair(np.full(2, gamma))).at[0]
+        worst.append(variance(there, (family.drawn()[o] + family.drawn()[o + 1]) / 2).mean())
+    assert np.mean(worst) < family.variance_between().mean() < 0.5
+
+
+@pytest.mark.parametrize(
+    ("at", "expected"),
+    [(0.0, (0, 0.0)), (0.5, (0, 1.0)), (1.0, (1, 1.0)), (-0.3, (0, 0.0)), (0.7071, (1, 0.25))],
+)
+def test_the_nearer_offset_has_the_greater_weight(at, expected):
+    o, t = nearness(np.array([0.0, 0.5, 1.0]), at)
+    assert o + t == pytest.approx(sum(expected), abs=1e-4)
+
+
+# ---- files
+
+
+@pytest.fixture(scope="module")
+def grid(tmp_path_factory):
+    path = tmp_path_factory.mktemp("grid") / "hair.npz"
+    some = GAMMA[::6]
+    np.savez(
+        path, offset=np.sin(some), theta_r_deg=np.degrees(THETA_R), theta_i=THETA_I, phi=PHI, value=hair(some)
+    )
+    return path
+
+
+@pytest.fixture(scope="module")
+def baked(grid):
+    """The folder of textures, by way of both commands."""
+    models, out = grid.parent / "fits", grid.parent / "baked"
+    assert cli.main(["fit", str(grid), "--out", str(models)]) == cli.OK
+    assert cli.main(["bake", "--model", str(models / "hair"), "--size", "64x19", "--out", str(out)]) == cli.OK
+    return out
+
+
+def test_the_family_file_says_what_the_fit_found(grid, baked):
+    family = fit_family(read(grid))
+    lines = [line.split() for line in (baked / NAME).read_text().splitlines()]
+    assert lines[:2] == [["hairlut-family", "1"], ["mirrored", "1"]]
+    np.testing.assert_allclose([float(w) for w in lines[2][1:]], THETA_R, rtol=1e-8)
+    offsets = [k for k, line in enumerate(lines) if line[0] == "offset"]
+    np.testing.assert_allclose([float(lines[k][1]) for k in offsets], family.data.offset, rtol=1e-8)
+    for o, k in enumerate(offsets):
+        for lobe in range(2):
+            assert lines[k + 1 + lobe][:2] == ["lobe", model_name(o, lobe)]
+            weights = [float(w) for w in lines[k + 1 + lobe][2:]]
+            np.testing.assert_allclose(weights, family.weight[o, :, lobe], rtol=1e-6)
+
+
+def test_baked_tables_draw_what_the_fit_says(grid, baked):
+    family = fit_family(read(grid))
+    one = family.data.at[1]
+    drawn = np.zeros_like(one.mass)
+    for k in range(2):
+        cells = []
+        for name, edges in (("direct_theta", one.theta_edges), ("direct_phi", one.phi_edges)):
+            table, _ = exr.read(baked / model_name(1, k) / f"{name}.exr")
+            u = np.stack([interpolant.invert(table, np.full(edges.size, t), edges) for t in one.theta_r])
+            u[:, 0], u[:, -1] = 0.0, 1.0
+            cells.append(np.diff(u, axis=1))
+        drawn += family.weight[1, :, k, None, None] * cells[0][:, :, None] * cells[1][:, None, :]
+    np.testing.assert_allclose(drawn.sum(axis=(1, 2)), 1.0, atol=1e-6)
+    assert (variance(one, drawn) < variance(one, family.drawn()[1]) + 0.05).all()
+
+
+def test_offsets_on_both_sides_are_not_mirrored(data):
+    both = of_grids([-0.5, 0.5], THETA_R, THETA_I, PHI, hair(np.arcsin([0.5, 0.5])))
+    assert data.mirrored
+    assert not both.mirrored
+    assert contents(fit_family(both)).splitlines()[1] == "mirrored 0"
+
+
+MISTAKES = {
+    "not increasing": (lambda a: a.update(offset=np.array([0.5, 0.5, 0.9])), "offset: expected.*increasing"),
+    "beyond the rim": (lambda a: a.update(offset=np.array([0.0, 0.5, 1.1])), r"within \[-1, 1\]"),
+    "one offset": (lambda a: a.update(offset=a["offset"][:1]), "at least two"),
+    "three axes": (lambda a: a.update(value=a["value"][0]), "expected four axes: 3 offsets"),
+    "other axes": (
+        lambda a: a.update(phi=a["phi"][:-1]),
+        r"offset 0: value has shape \(7, 45, 72\), expected",
+    ),
+    "negative": (
+        lambda a: a["value"].__setitem__((1, 2, 3, 4), -1.0),
+        "offset 0.7071: negative value at theta_r",
+    ),
+    "no light": (lambda a: a["value"].__setitem__((2, 6), 0.0), "offset 1: no mass at theta_r = 60 deg"),
+    "NaN": (lambda a: a["value"].__setitem__((1, 2, 3, 4), np.nan), r"not a finite number at \[1, 2, 3, 4\]"),
+    "no value": (lambda a: a.pop("value"), "array value is missing"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda name: name.replace(" ", "-"))
+def test_a_mistake_in_the_data_is_named(mistake, grid, tmp_path, capsys):
+    change, said = MISTAKES[mistake]
+    with np.load(grid) as given:
+        arrays = {name: given[name] for name in given.files}
+    change(arrays)
+    np.savez(tmp_path / "data.npz", **arrays)
+    assert cli.main(["fit", str(tmp_path / "data.npz"), "--out", str(tmp_path)]) == cli.WRONG_USE
+    with pytest.raises(HairlutError, match=said):
+        read(tmp_path / "data.npz")
+    assert "data.npz" in capsys.readouterr().err
+
+
+def test_offsets_in_a_csv_file_are_refused(tmp_path, capsys):
+    with (tmp_path / "data.csv").open("w", newline="") as file:
+        csv.writer(file).writerows([["offset", "theta_r", "theta_i", "phi", "value"], [0, 0, 0, 0, 1]])
+    assert cli.main(["fit", str(tmp_path / "data.csv")]) == cli.WRONG_USE
+    assert "expected an npz file whose value has four axes" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--lobes", "direct"], "--lobes direct: .* use --lobes-per-offset"),
+        (["--lobes-per-offset", "0"], f"0 lobes for each offset: expected 1 to {MAX_LOBES}"),
+        (["--lobes-per-offset", "9"], f"9 lobes for each offset: expected 1 to {MAX_LOBES}"),
+    ],
+    ids=lambda value: value[0] + value[1] if isinstance(value, list) else "",
+)
+def test_options_that_make_no_family_are_refused(options, said, grid, tmp_path, capsys):
+    import re
+
+    assert cli.main(["fit", str(grid), "--out", str(tmp_path), *options]) == cli.WRONG_USE
+    assert re.search(said, capsys.readouterr().err)
+    assert not list(tmp_path.iterdir())
+
+
+def test_two_families_do_not_share_a_folder(baked, tmp_path, capsys):
+    models = baked.parent / "fits" / "hair"
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / NAME).write_text("")
+    (other / "more.npz").write_bytes((models / f"{model_name(0, 0)}.npz").read_bytes())
+    command = ["bake", "--model", str(models), "--model", str(other), "--out", str(tmp_path / "out")]
+    assert cli.main(command) == cli.WRONG_USE
+    assert "bake each family into a directory of its own" in capsys.readouterr().err
+
+
+def test_a_family_that_does_not_bake_whole_has_no_file(baked, tmp_path):
+    models = tmp_path / "models"
+    models.mkdir()
+    (models / NAME).write_text("hairlut-family 1\n")
+    (models / "broken.toml").write_text("")
+    assert cli.main(["bake", "--model", str(models), "--out", str(tmp_path / "out")]) == cli.CHECK_FAILED
+    assert not (tmp_path / "out" / NAME).exists()

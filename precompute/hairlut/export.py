@@ -133,7 +133,8 @@ def _rows(table: Table) -> np.ndarray:
 
 
 def _cells(table: Table) -> np.ndarray:
-    """The cells, as the runtime stores them, with its float arithmetic: each row from both ends to its middle."""
+    """The cells, as the runtime stores them, with its float arithmetic: from both ends to the
+    middle, the rows of each."""
     x = np.concatenate([table.texels, table.texels[-1:]])
     d = np.diff(x, axis=1)
     c = np.empty_like(d)
@@ -144,7 +145,8 @@ def _cells(table: Table) -> np.ndarray:
     half = table.width // 2 + 1
     low = np.stack([x[:, :-1], d, c], axis=-1)[:, :half]
     high = np.stack([x[:, 1:], -d, c], axis=-1)[:, ::-1][:, :half]
-    return np.pad(np.concatenate([low, high], axis=1), ((0, 0), (0, 0), (0, 1))).reshape(len(x), -1)
+    cells = np.concatenate([low, high], axis=1).swapaxes(0, 1)
+    return np.pad(cells, ((0, 0), (0, 0), (0, 1))).reshape(2 * half, -1)
 
 
 def _arrays(table: Table) -> str:

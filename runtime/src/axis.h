@@ -30,7 +30,7 @@ typedef struct hairlut_cell {
     float x0, d, c;
 } hairlut_cell;
 
-/* A place on the u axis: the offset of its cell in a row of cells, the fraction in it, and |du/dcolumn| there. */
+/* A place on the u axis: the offset of its cell in row 0, the fraction in it, and |du/dcolumn| there. */
 typedef struct hairlut_knot {
     ptrdiff_t cell;
     float f;
@@ -78,9 +78,9 @@ static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta
 /* Blended as (1-t) a + t b, which keeps a width above zero at every t, as a + t (b-a) does not where b is far below a. */
 static inline hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, hairlut_row row, ptrdiff_t offset)
 {
-    const float *a = axis->cells + (row.j * axis->pitch + offset);
+    const float *a = axis->cells + (offset + HAIRLUT_CELL * (ptrdiff_t)row.j);
     const hairlut_quad below = hairlut_quad_mul(hairlut_quad_all(1.0f - row.t), hairlut_quad_load(a));
-    const hairlut_quad above = hairlut_quad_mul(hairlut_quad_all(row.t), hairlut_quad_load(a + axis->pitch));
+    const hairlut_quad above = hairlut_quad_mul(hairlut_quad_all(row.t), hairlut_quad_load(a + HAIRLUT_CELL));
     float part[3];
     hairlut_quad_first3(hairlut_quad_add(below, above), part);
     const hairlut_cell cell = {part[0], part[1], part[2]};
@@ -102,7 +102,7 @@ static inline hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
     const float y = axis->warp == HAIRLUT_WARP_QUARTIC ? sqrtf(sqrtf(m + axis->e)) : m;
     const float c = (y - axis->f0) * axis->inverse_k;
     const int i = (int)c;
-    const hairlut_knot knot = {(-(ptrdiff_t)(u > 0.5f) & axis->half) + HAIRLUT_CELL * (ptrdiff_t)i, c - (float)i, axis->du * hairlut_axis_stretch(axis, y)};
+    const hairlut_knot knot = {(-(ptrdiff_t)(u > 0.5f) & axis->half) + i * axis->pitch, c - (float)i, axis->du * hairlut_axis_stretch(axis, y)};
     return knot;
 }
 
@@ -164,7 +164,7 @@ static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_
 {
     *high = found >= axis->columns / 2;
     *i = abs((-*high & (axis->columns - 2)) - found);
-    return hairlut_axis_cell(axis, row, (-(ptrdiff_t)*high & axis->half) + HAIRLUT_CELL * (ptrdiff_t)*i);
+    return hairlut_axis_cell(axis, row, (-(ptrdiff_t)*high & axis->half) + *i * axis->pitch);
 }
 
 static inline hairlut_place hairlut_axis_locate(const hairlut_axis *axis, float theta_r, float x)

@@ -64,12 +64,12 @@ static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
     return j;
 }
 
-/* The offset of cell i of a half row. */
+/* The offset of cell i, counted from an end, of row j. */
 static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
 {
-    const whole row = imul(j, iall((int)axis->pitch));
+    const whole cell = imul(i, iall((int)axis->pitch));
     const whole half = ichoose(high, iall((int)axis->half), iall(0));
-    return iadd(iadd(row, half), imul(i, iall(HAIRLUT_CELL)));
+    return iadd(iadd(cell, half), imul(j, iall(HAIRLUT_CELL)));
 }
 
 /* hairlut_axis_stretch */
@@ -108,7 +108,7 @@ static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
 {
     real a[HAIRLUT_CELL], b[HAIRLUT_CELL];
     gather4(axis->cells, at, a);
-    gather4(axis->cells + axis->pitch, at, b);
+    gather4(axis->cells + HAIRLUT_CELL, at, b);
     const real s = sub(all(1.0f), t);
     const cells cell = {add(mul(s, a[0]), mul(t, b[0])), add(mul(s, a[1]), mul(t, b[1])), add(mul(s, a[2]), mul(t, b[2]))};
     return cell;

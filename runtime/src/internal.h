@@ -32,12 +32,14 @@ enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
  *
  *     x = x0 + f (d + c (1-f)),
  *
- * where d < 0 if the high end is the nearer one. A row of cells is its low half, from the low end on, and its high half,
- * from the high end on: a sample, whose place is counted from the nearer end, needs no mirroring. Both halves go one cell
- * beyond u = 1/2. A cell is x0, d, c and a float that nobody reads: one load of 16 bytes, never across cache lines. */
+ * where d < 0 if the high end is the nearer one. The cells stand in two halves, one from the low end on and one from the high
+ * end on, so that a sample, whose place is counted from the nearer end, needs no mirroring; both go one cell beyond u = 1/2.
+ * In a half, a cell's rows follow each other: the two that a sample blends are mostly in one cache line. A cell is x0, d, c
+ * and a float that nobody reads: one load of 16 bytes. */
 enum { HAIRLUT_CELL = 4 /* floats */ };
-#define HAIRLUT_HALF(columns) (HAIRLUT_CELL * ((columns) / 2 + 1)) /* floats */
-#define HAIRLUT_CELLS(columns, height) (2 * HAIRLUT_HALF(columns) * ((height) + 1))
+#define HAIRLUT_PITCH(height) (HAIRLUT_CELL * ((height) + 1)) /* floats from one cell of a row to the next */
+#define HAIRLUT_HALF(columns) ((columns) / 2 + 1)              /* cells of a row */
+#define HAIRLUT_CELLS(columns, height) (2 * HAIRLUT_HALF(columns) * HAIRLUT_PITCH(height))
 
 #if defined(__GNUC__)
 #define HAIRLUT_LINE_ALIGNED __attribute__((aligned(64)))
@@ -51,7 +53,7 @@ enum { HAIRLUT_CELL = 4 /* floats */ };
 typedef struct hairlut_axis {
     const float *rows; /* the first texel of row 0; best if its pivots are aligned to a cache line */
     const float *cells; /* the first cell of row 0; best if aligned to a cell's size */
-    ptrdiff_t pitch;  /* floats from one row of cells to the next */
+    ptrdiff_t pitch;  /* floats from one cell of a row to the next */
     ptrdiff_t half;   /* floats from the low to the high half */
     float row_origin; /* theta_r of row 0 */
     float row_scale;  /* rows per radian of theta_r */
@@ -74,7 +76,8 @@ typedef struct hairlut_axis {
  * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats. */
 #define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)       \
     {                                                                                                                 \
-        (stored) + HAIRLUT_PIVOTS, cells, 2 * HAIRLUT_HALF(columns_), HAIRLUT_HALF(columns_), row_origin_, row_scale_, \
+        (stored) + HAIRLUT_PIVOTS, cells, HAIRLUT_PITCH(height_), HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_),        \
+            row_origin_, row_scale_,                                                                                  \
             (float)((height_) - 1), warp_, e_, f0_, k_, 1.0f / (k_),                                                  \
             (warp_) == HAIRLUT_WARP_QUARTIC ? 4.0f * (k_) : (k_), low_, high_, columns_, height_,                     \
             HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                                          \

@@ -132,12 +132,15 @@ static void store_cell(float *stored, float x0, float d, float c)
     stored[3] = 0.0f;
 }
 
-static void store_cells(float *stored, const float *row, int width, float limit)
+/* The cells of row j of an axis. */
+static void store_cells(const hairlut_axis *axis, float *cells, int j, const float *row, float limit)
 {
-    for (int k = 0; k < HAIRLUT_HALF(width) / HAIRLUT_CELL; ++k, stored += HAIRLUT_CELL) {
+    const int width = axis->columns;
+    float *stored = cells + HAIRLUT_CELL * j;
+    for (int k = 0; k < HAIRLUT_HALF(width); ++k, stored += axis->pitch) {
         const int h = width - 2 - k;
         store_cell(stored, row[k], row[k + 1] - row[k], curvature(row, width, k, limit));
-        store_cell(stored + HAIRLUT_HALF(width), row[h + 1], row[h] - row[h + 1], curvature(row, width, h, limit));
+        store_cell(stored + axis->half, row[h + 1], row[h] - row[h + 1], curvature(row, width, h, limit));
     }
 }
 
@@ -165,7 +168,7 @@ static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *memo
     for (int j = 0; j <= t->height; ++j) {
         const float *row = t->texels + (size_t)(j < t->height ? j : t->height - 1) * (size_t)t->width;
         store_row(rows + (size_t)j * (size_t)axis->stride, row, t->width);
-        store_cells(cells + j * axis->pitch, row, t->width, t->cell_limit);
+        store_cells(axis, cells, j, row, t->cell_limit);
     }
     for (int k = 1; k <= HAIRLUT_LINE; ++k)
         cells[-k] = 0.0f;

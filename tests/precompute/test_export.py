@@ -48,16 +48,16 @@ def test_rows_are_the_texels_after_their_pivots(source, shipped):
 def test_cells_are_those_of_the_interpolant_from_both_ends(source, shipped):
     table, _, _, _ = shipped
     half = table.width // 2 + 1
-    stored = array(source, table, "cells").reshape(table.height + 1, 2, half, 4)
+    stored = array(source, table, "cells").reshape(2, half, table.height + 1, 4)
     exact = interpolant.cells(table, with_last_twice(table.theta_r))
     step = np.spacing(np.float32(np.abs(table.domain).max()))
     for k in range(half):
         for side, i, x0, sign in ((0, k, exact.x0, 1), (1, table.width - 2 - k, exact.x0 + exact.d, -1)):
-            at, d, c, unused = stored[:, side, k].astype(float).T
+            at, d, c, unused = stored[side, k].astype(float).T
             assert np.abs(at - x0[:, i]).max() <= step / 2
             assert (np.sign(d) == sign).all()
             assert np.abs(sign * d - exact.d[:, i]).max() <= step
-            assert np.abs(c - exact.c[:, i]).max() <= 2 * step  # the limit is a float too
+            assert np.abs(c - exact.c[:, i]).max() <= 3 * step  # the limit is a float too
             assert (unused == 0).all()
 
 

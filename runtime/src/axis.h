@@ -124,23 +124,25 @@ static inline int hairlut_count(const float *a, int stride, float t, float x, in
     return hairlut_tally_sum(tally);
 }
 
-/* The last of the n blended texels that is at most x, or the first: halved down to HAIRLUT_PIVOTS, then counted. */
-static inline int hairlut_last(const float *a, int stride, float t, float x, int n)
+/* Halves the n cells from a on in which x lies, n a power of two, down to at most HAIRLUT_PIVOTS: the first of those. */
+static inline int hairlut_halve(const float *a, int stride, float t, float x, int n)
 {
     int first = 0;
     for (; n > HAIRLUT_PIVOTS; n /= 2)
         first += hairlut_blend(a[first + n / 2], a[first + n / 2 + stride], t) <= x ? n / 2 : 0;
-    const int count = HAIRLUT_COUNT(a + first, stride, t, x, n);
-    return first + (count > 1 ? count - 1 : 0);
+    return first;
 }
 
 /* The cell whose blended texels enclose x, counted from the low end: the pivots find its block. */
 static inline int hairlut_axis_find(const hairlut_axis *axis, hairlut_row row, float x)
 {
     const int stride = axis->stride, step = axis->step, last = axis->columns - 2;
+    const int few = step < HAIRLUT_PIVOTS ? step : HAIRLUT_PIVOTS;
     const float *texels = axis->rows + (ptrdiff_t)row.j * stride;
-    const int first = step * HAIRLUT_COUNT(texels - HAIRLUT_PIVOTS, stride, row.t, x, HAIRLUT_PIVOTS);
-    const int i = first + hairlut_last(texels + first, stride, row.t, x, step);
+    int first = step * HAIRLUT_COUNT(texels - HAIRLUT_PIVOTS, stride, row.t, x, HAIRLUT_PIVOTS);
+    first += hairlut_halve(texels + first, stride, row.t, x, step);
+    const int count = HAIRLUT_COUNT(texels + first, stride, row.t, x, few); /* also of the first itself */
+    const int i = first + (count > 1 ? count - 1 : 0);
     return i < last ? i : last; /* x is the domain's end */
 }
 
@@ -167,12 +169,24 @@ static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_
     return hairlut_axis_cell(axis, row, (-(ptrdiff_t)*high & axis->half) + *i * axis->pitch);
 }
 
-static inline hairlut_place hairlut_axis_locate(const hairlut_axis *axis, float theta_r, float x)
+/* The row and the cell of an angle. */
+typedef struct hairlut_found {
+    hairlut_row row;
+    int cell; /* counted from the low end */
+} hairlut_found;
+
+/* x outside the domain is moved to its end, NaN to the low one: the search is for what a row holds, not for infinity. */
+static inline hairlut_found hairlut_axis_look_up(const hairlut_axis *axis, float theta_r, float x)
 {
     const hairlut_row row = hairlut_axis_row(axis, theta_r);
+    const hairlut_found found = {row, hairlut_axis_find(axis, row, hairlut_clamp(x, axis->low, axis->high))};
+    return found;
+}
+
+static inline hairlut_place hairlut_axis_locate(const hairlut_axis *axis, hairlut_found found, float x)
+{
     hairlut_place place;
-    const hairlut_cell cell =
-        hairlut_axis_found(axis, row, hairlut_axis_find(axis, row, x), &place.i, &place.high);
+    const hairlut_cell cell = hairlut_axis_found(axis, found.row, found.cell, &place.i, &place.high);
     place.f = hairlut_cell_solve(&cell, x, &place.slope);
     return place;
 }
@@ -189,23 +203,26 @@ static inline hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float t
     return draw;
 }
 
-/* The middle cell of an even number of columns is seen from the low end. Beyond its middle the high end is nearer: hence the
- * smaller of the distances from both ends, here and in hairlut_axis_invert. */
-static inline float hairlut_axis_pdf(const hairlut_axis *axis, float theta_r, float x)
+/* The density at x, which look_up found. The middle cell of an even number of columns is seen from the low end. Beyond its
+ * middle the high end is nearer: hence the smaller of the distances from both ends, here and in hairlut_axis_invert. */
+static inline float hairlut_axis_density(const hairlut_axis *axis, hairlut_found found, float x)
 {
-    if (!(x >= axis->low && x <= axis->high))
-        return 0.0f;
-    const hairlut_place place = hairlut_axis_locate(axis, theta_r, x);
+    const hairlut_place place = hairlut_axis_locate(axis, found, x);
     const float k = axis->k, part = k * place.f;
     const float near_end = axis->f0 + k * (float)place.i, far_end = axis->f0 + k * (float)(axis->columns - 1 - place.i);
     const float y = hairlut_min(near_end + part, far_end - part);
-    return hairlut_axis_stretch(axis, y) * (axis->du / place.slope);
+    const float pdf = hairlut_axis_stretch(axis, y) * (axis->du / place.slope);
+    return x >= axis->low && x <= axis->high ? pdf : 0.0f;
+}
+
+static inline float hairlut_axis_pdf(const hairlut_axis *axis, float theta_r, float x)
+{
+    return hairlut_axis_density(axis, hairlut_axis_look_up(axis, theta_r, x), x);
 }
 
 static inline float hairlut_axis_invert(const hairlut_axis *axis, float theta_r, float x)
 {
-    x = hairlut_clamp(x, axis->low, axis->high); /* the search is for what a row holds, not for infinity */
-    const hairlut_place place = hairlut_axis_locate(axis, theta_r, x);
+    const hairlut_place place = hairlut_axis_locate(axis, hairlut_axis_look_up(axis, theta_r, x), x);
     const float column = (float)place.i + place.f, mirrored = (float)(axis->columns - 1) - column;
     const float f0 = axis->f0;
     float m = axis->k * hairlut_min(column, mirrored);

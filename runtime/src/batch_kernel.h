@@ -129,23 +129,37 @@ static inline real draw(const hairlut_axis *axis, const places *p, size_t s, rea
 static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q)
 {
     for (size_t k = 0; k < n; ++k) {
-        const int row = q->j[k] * axis->stride;
-        const float *pivots = axis->rows + row - HAIRLUT_PIVOTS;
-        const int first = axis->step * HAIRLUT_COUNT(pivots, axis->stride, q->t[k], q->x[k], HAIRLUT_PIVOTS);
-        q->cell[k] = first;
-        q->at[k] = row + first;
+        const float *pivots = axis->rows + q->at[k] - HAIRLUT_PIVOTS;
+        q->cell[k] = HAIRLUT_COUNT(pivots, axis->stride, q->t[k], q->x[k], HAIRLUT_PIVOTS);
     }
+    for (size_t s = 0; s < n; s += LANES) {
+        const whole first = imul(iload(q->cell + s), iall(axis->step));
+        istore(q->cell + s, first);
+        istore(q->at + s, iadd(iload(q->at + s), first));
+    }
+}
+
+/* hairlut_axis_find from the first cell of what is left of a block and how many of its texels are at most x */
+static inline whole last_of(const hairlut_axis *axis, whole first, whole count)
+{
+    const whole cell = iadd(first, ilarger(isub(count, iall(1)), iall(0)));
+    return ismaller(cell, iall(axis->columns - 2));
 }
 
 /* The rest of hairlut_axis_find, one query at a time. */
 static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q)
 {
-    const int last = axis->columns - 2;
-    for (size_t k = 0; k < n; ++k) {
-        const float *block = axis->rows + q->at[k];
-        const int cell = q->cell[k] + hairlut_last(block, axis->stride, q->t[k], q->x[k], axis->step);
-        q->cell[k] = cell < last ? cell : last;
+    const int few = axis->step < HAIRLUT_PIVOTS ? axis->step : HAIRLUT_PIVOTS;
+    int count[BLOCK];
+    for (size_t k = 0; axis->step > HAIRLUT_PIVOTS && k < n; ++k) {
+        const int halved = hairlut_halve(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], axis->step);
+        q->cell[k] += halved;
+        q->at[k] += halved;
     }
+    for (size_t k = 0; k < n; ++k)
+        count[k] = HAIRLUT_COUNT(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], few);
+    for (size_t s = 0; s < n; s += LANES)
+        istore(q->cell + s, last_of(axis, iload(q->cell + s), iload(count + s)));
 }
 
 /* The same for blocks of four cells, whose texels one load brings. */
@@ -153,16 +167,15 @@ static inline void find_in_small_blocks(const hairlut_axis *axis, size_t n, quer
 {
     for (size_t s = 0; s < n; s += LANES) {
         const real t = load(q->t + s), x = load(q->x + s);
-        const whole first = iload(q->cell + s);
-        whole cell = isub(first, iall(1));
+        whole count = iall(0);
         real a[4], b[4];
         gather4(axis->rows, q->at + s, a);
         gather4(axis->rows + axis->stride, q->at + s, b);
         for (int k = 0; k < 4; ++k) {
             const mask below = at_least(x, add(a[k], mul(t, sub(b[k], a[k]))));
-            cell = ichoose(below, iadd(cell, iall(1)), cell);
+            count = ichoose(below, iadd(count, iall(1)), count);
         }
-        istore(q->cell + s, ismaller(ilarger(cell, first), iall(axis->columns - 2)));
+        istore(q->cell + s, last_of(axis, iload(q->cell + s), count));
     }
 }
 
@@ -205,7 +218,9 @@ static inline void ask(const hairlut_axis *axis, real theta_r, real x, queries *
 {
     const real low = all(axis->low), high = all(axis->high);
     real t;
-    istore(q->j + s, find_row(axis, theta_r, &t));
+    const whole j = find_row(axis, theta_r, &t);
+    istore(q->j + s, j);
+    istore(q->at + s, imul(j, iall(axis->stride)));
     store(q->t + s, t);
     store(q->x + s, clamp(x, low, high));
     store(q->du + s, choose(both(at_least(x, low), at_least(high, x)), all(axis->du), all(0.0f)));

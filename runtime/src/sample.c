@@ -22,7 +22,11 @@ float hairlut_pdf_direct(const hairlut_model *model, float theta_r, float phi_r,
     if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
         return 0.0f;
     const float phi = hairlut_relative_azimuth(model, phi_r, phi_i);
-    return hairlut_axis_pdf(&model->direct_theta, theta_r, theta_i) * hairlut_axis_pdf(&model->direct_phi, theta_r, phi);
+    /* both searches before both densities: one waits for its loads while the other goes on */
+    const hairlut_found theta_found = hairlut_axis_look_up(&model->direct_theta, theta_r, theta_i);
+    const hairlut_found phi_found = hairlut_axis_look_up(&model->direct_phi, theta_r, phi);
+    return hairlut_axis_density(&model->direct_theta, theta_found, theta_i)
+           * hairlut_axis_density(&model->direct_phi, phi_found, phi);
 }
 
 float hairlut_pdf_multiple(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i)

@@ -133,7 +133,7 @@ float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)
 
 /* ---- one axis: the reading of a table ------------------------------------------------------------------------- */
 
-/* Two neighbouring rows are blended linearly in theta_r. Within a cell of the blended row, with f in [0,1] its fraction,
+/* The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
  * x(f) = x0 + f (d + c (1-f)) and dx/df = d + c (1-2f), where d is the cell's width and c its curvature, taken from the
  * widths of both neighbours. The density is du/dx. */
 
@@ -146,9 +146,10 @@ struct hairlut_cell {
     float x0, d, c;
 };
 
-/* A place on the u axis: cell index, fraction in it, and du/dcolumn there. */
+/* A place on the u axis: cell, counted from the low or the high end, fraction of it, counted likewise, and du/dcolumn there. */
 struct hairlut_knot {
     int i;
+    bool high;
     float f;
     float du;
 };
@@ -172,10 +173,12 @@ float hairlut_blend(float a, float b, float t)
     return x;
 }
 
-/* The same for widths: positive for positive a and b at every t, which the form above is not where b is far below a. */
-float hairlut_blend_width(float a, float b, float t)
+/* The same for the parts of a cell: a width is positive for positive a and b at every t, which it is not by the form above where
+ * b is far below a. */
+float hairlut_blend_part(float a, float b, float t)
 {
-    return (1.0 - t) * a + t * b;
+    HAIRLUT_PRECISE float x = (1.0 - t) * a + t * b;
+    return x;
 }
 
 /* The blended texel of knot i. */
@@ -186,33 +189,31 @@ float hairlut_texel(hairlut_axis axis, hairlut_rows rows, int i)
     return hairlut_blend(a, b, rows.t);
 }
 
-/* Of one row: the widths of the cell before, of this cell and of the cell after, and this cell's first texel. Beyond an end
- * of the row stands a width from which the end cell takes the curvature d - d_neighbour. */
-vec4 hairlut_widths(hairlut_axis axis, int row, int i)
+/* (nearer end, width, curvature) of a cell of one row, n columns from the low end. The curvature comes from the widths of both
+ * neighbours, at an end of the row from the one that there is. Seen from the high end the width is negative. */
+vec3 hairlut_row_cell(hairlut_axis axis, int row, int n, bool high)
 {
     int last = axis.columns - 1;
-    float x0 = HAIRLUT_FETCH(axis.table, i, row);
-    float x1 = HAIRLUT_FETCH(axis.table, i + 1, row);
+    float x0 = HAIRLUT_FETCH(axis.table, n, row);
+    float x1 = HAIRLUT_FETCH(axis.table, n + 1, row);
     float d = x1 - x0;
-    float before = x0 - HAIRLUT_FETCH(axis.table, max(i - 1, 0), row);
-    float after = HAIRLUT_FETCH(axis.table, min(i + 2, last), row) - x1;
-    if (i == 0)
-        before = 4.0 * d - 3.0 * after;
-    else if (i == last - 1)
-        after = 4.0 * d - 3.0 * before;
-    return vec4(before, d, after, x0);
+    bool inner = n > 0 && n < last - 1;
+    float before = n > 0 ? x0 - HAIRLUT_FETCH(axis.table, max(n - 1, 0), row) : d;
+    float after = n < last - 1 ? HAIRLUT_FETCH(axis.table, min(n + 2, last), row) - x1 : d;
+    float bound = axis.limit * d;
+    float c = clamp((inner ? 0.25 : 1.0) * (before - after), -bound, bound);
+    return vec3(high ? x1 : x0, high ? -d : d, c);
 }
 
-/* Widths are taken in each row before they are blended: neighbouring texels subtract without rounding. */
-hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, int i)
+/* Cell i, counted from the low or the high end. Each row's cell is taken before they are blended: neighbouring texels subtract
+ * without rounding. */
+hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, int i, bool high)
 {
-    vec4 a = hairlut_widths(axis, rows.row, i);
-    vec4 b = hairlut_widths(axis, rows.row + 1, i);
-    float d = hairlut_blend_width(a.y, b.y, rows.t);
-    float before = hairlut_blend_width(a.x, b.x, rows.t);
-    float after = hairlut_blend_width(a.z, b.z, rows.t);
-    float bound = axis.limit * d;
-    return hairlut_cell(hairlut_blend(a.w, b.w, rows.t), d, clamp(0.25 * (before - after), -bound, bound));
+    int n = high ? axis.columns - 2 - i : i;
+    vec3 a = hairlut_row_cell(axis, rows.row, n, high);
+    vec3 b = hairlut_row_cell(axis, rows.row + 1, n, high);
+    return hairlut_cell(hairlut_blend_part(a.x, b.x, rows.t), hairlut_blend_part(a.y, b.y, rows.t),
+                        hairlut_blend_part(a.z, b.z, rows.t));
 }
 
 /* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */
@@ -232,39 +233,38 @@ hairlut_knot hairlut_axis_knot(hairlut_axis axis, float number)
     }
     c = clamp(c, 0.0, 0.5 * float(axis.columns - 1));
     int i = int(c);
-    float f = c - float(i);
-    if (u > 0.5)
-        return hairlut_knot(axis.columns - 2 - i, 1.0 - f, du);
-    return hairlut_knot(i, f, du);
+    return hairlut_knot(i, u > 0.5, c - float(i), du);
 }
 
-/* Distances, in columns, of a place from both ends of the axis; the smaller one is the folded column. */
-vec2 hairlut_from_ends(hairlut_axis axis, int i, float f)
+/* (column, its mirror image) of a place in cell i, counted from one end. */
+vec2 hairlut_columns(hairlut_axis axis, int i, float f)
 {
-    return vec2(float(i) + f, float(axis.columns - 2 - i) + (1.0 - f));
+    float column = float(i) + f;
+    return vec2(column, float(axis.columns - 1) - column);
 }
 
-/* du/dcolumn at a place given by cell and fraction. */
+/* du/dcolumn at a place given by cell and fraction. The middle cell of an even number of columns is seen from the low end; beyond
+ * its middle the high end is nearer. */
 float hairlut_axis_du(hairlut_axis axis, int i, float f)
 {
     if (axis.warp != HAIRLUT_WARP_QUARTIC)
         return axis.k;
-    vec2 ends = hairlut_from_ends(axis, i, f);
-    float y = axis.f0 + axis.k * min(ends.x, ends.y);
+    vec2 columns = hairlut_columns(axis, i, f);
+    float y = axis.f0 + axis.k * min(columns.x, columns.y);
     return 4.0 * axis.k * (y * (y * y));
 }
 
 /* Column to u. */
-float hairlut_axis_u(hairlut_axis axis, int i, float f)
+float hairlut_axis_u(hairlut_axis axis, int i, bool high, float f)
 {
-    vec2 ends = hairlut_from_ends(axis, i, f);
-    float m = axis.k * min(ends.x, ends.y);
+    vec2 columns = hairlut_columns(axis, i, f);
+    float m = axis.k * min(columns.x, columns.y);
     if (axis.warp == HAIRLUT_WARP_QUARTIC) {
         float y = axis.f0 + m;
         m *= (y + axis.f0) * (y * y + axis.f0 * axis.f0); // y^4 - f0^4 without its cancellation
     }
     m = clamp(m, 0.0, 0.5);
-    return ends.x <= ends.y ? m : 1.0 - m;
+    return high || columns.y < columns.x ? 1.0 - m : m;
 }
 
 /* The cell whose blended texels enclose x. */
@@ -279,23 +279,26 @@ int hairlut_axis_find(hairlut_axis axis, hairlut_rows rows, float x)
     return i;
 }
 
-/* (fraction of a cell at which x lies, dx/df there). The root of the quadratic is that slope, written as the slope at the
+/* (fraction of a cell at which x lies, |dx/df| there). The root of the quadratic is that slope, written as the slope at the
  * cell's flatter end and the distance from there, which cancels nothing. */
 vec2 hairlut_cell_solve(hairlut_cell cell, float x)
 {
-    float d = clamp(x - cell.x0, 0.0, cell.d);
-    float flat_slope = cell.d - abs(cell.c);
-    float away = cell.c > 0.0 ? cell.d - d : d;
-    float slope = sqrt(flat_slope * flat_slope + 4.0 * abs(cell.c) * away);
-    return vec2(min(2.0 * d / (cell.d + cell.c + slope), 1.0), slope);
+    bool falls = cell.d < 0.0;
+    float d = abs(cell.d);
+    float c = falls ? -cell.c : cell.c;
+    float along = clamp(falls ? cell.x0 - x : x - cell.x0, 0.0, d);
+    float flat_slope = d - abs(c);
+    float away = c > 0.0 ? d - along : along;
+    float slope = sqrt(flat_slope * flat_slope + 4.0 * abs(c) * away);
+    return vec2(min(2.0 * along / (d + c + slope), 1.0), slope);
 }
 
 hairlut_draw hairlut_axis_sample(hairlut_axis axis, float theta_r, float u)
 {
     hairlut_knot knot = hairlut_axis_knot(axis, u);
-    hairlut_cell cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i);
+    hairlut_cell cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i, knot.high);
     float x = cell.x0 + knot.f * (cell.d + cell.c * (1.0 - knot.f));
-    float slope = cell.d + cell.c * (1.0 - 2.0 * knot.f);
+    float slope = abs(cell.d + cell.c * (1.0 - 2.0 * knot.f));
     return hairlut_draw(clamp(x, axis.low, axis.high), knot.du / slope);
 }
 
@@ -305,8 +308,10 @@ float hairlut_axis_pdf(hairlut_axis axis, float theta_r, float x)
     if (hairlut_is_nan(x) || x < axis.low || x > axis.high)
         return 0.0;
     hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
-    int i = hairlut_axis_find(axis, rows, x);
-    vec2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i), x);
+    int n = hairlut_axis_find(axis, rows, x);
+    bool high = n >= axis.columns / 2;
+    int i = high ? axis.columns - 2 - n : n;
+    vec2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
     return hairlut_axis_du(axis, i, place.x) / place.y;
 }
 
@@ -315,9 +320,11 @@ float hairlut_axis_invert(hairlut_axis axis, float theta_r, float number)
 {
     float x = hairlut_tame(number, axis.low);
     hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
-    int i = hairlut_axis_find(axis, rows, x);
-    vec2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i), x);
-    return hairlut_axis_u(axis, i, place.x);
+    int n = hairlut_axis_find(axis, rows, x);
+    bool high = n >= axis.columns / 2;
+    int i = high ? axis.columns - 2 - n : n;
+    vec2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
+    return hairlut_axis_u(axis, i, high, place.x);
 }
 
 /* ---- the two lobes -------------------------------------------------------------------------------------------- */

@@ -121,7 +121,7 @@ fn hairlut_pdf_to_solid_angle(pdf_angle: f32, theta_i: f32) -> f32 {
 
 /* ---- one axis: the reading of a table ------------------------------------------------------------------------- */
 
-/* Two neighbouring rows are blended linearly in theta_r. Within a cell of the blended row, with f in [0,1] its fraction,
+/* The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
  * x(f) = x0 + f (d + c (1-f)) and dx/df = d + c (1-2f), where d is the cell's width and c its curvature, taken from the
  * widths of both neighbours. The density is du/dx. */
 
@@ -136,9 +136,10 @@ struct hairlut_cell {
     c: f32,
 }
 
-/* A place on the u axis: cell index, fraction in it, and du/dcolumn there. */
+/* A place on the u axis: cell, counted from the low or the high end, fraction of it, counted likewise, and du/dcolumn there. */
 struct hairlut_knot {
     i: i32,
+    high: bool,
     f: f32,
     du: f32,
 }
@@ -159,8 +160,9 @@ fn hairlut_blend(a: f32, b: f32, t: f32) -> f32 {
     return a + t * (b - a);
 }
 
-/* The same for widths: positive for positive a and b at every t, which the form above is not where b is far below a. */
-fn hairlut_blend_width(a: f32, b: f32, t: f32) -> f32 {
+/* The same for the parts of a cell: a width is positive for positive a and b at every t, which it is not by the form above where
+ * b is far below a. */
+fn hairlut_blend_part(a: f32, b: f32, t: f32) -> f32 {
     return (1.0 - t) * a + t * b;
 }
 
@@ -171,32 +173,29 @@ fn hairlut_texel(axis: hairlut_axis, rows: hairlut_rows, i: i32) -> f32 {
     return hairlut_blend(a, b, rows.t);
 }
 
-/* Of one row: the widths of the cell before, of this cell and of the cell after, and this cell's first texel. Beyond an end
- * of the row stands a width from which the end cell takes the curvature d - d_neighbour. */
-fn hairlut_widths(axis: hairlut_axis, row: i32, i: i32) -> vec4f {
+/* (nearer end, width, curvature) of a cell of one row, n columns from the low end. The curvature comes from the widths of both
+ * neighbours, at an end of the row from the one that there is. Seen from the high end the width is negative. */
+fn hairlut_row_cell(axis: hairlut_axis, row: i32, n: i32, high: bool) -> vec3f {
     let last = axis.columns - 1;
-    let x0 = hairlut_fetch(axis.table, i, row);
-    let x1 = hairlut_fetch(axis.table, i + 1, row);
+    let x0 = hairlut_fetch(axis.table, n, row);
+    let x1 = hairlut_fetch(axis.table, n + 1, row);
     let d = x1 - x0;
-    var before = x0 - hairlut_fetch(axis.table, max(i - 1, 0), row);
-    var after = hairlut_fetch(axis.table, min(i + 2, last), row) - x1;
-    if (i == 0) {
-        before = 4.0 * d - 3.0 * after;
-    } else if (i == last - 1) {
-        after = 4.0 * d - 3.0 * before;
-    }
-    return vec4f(before, d, after, x0);
+    let inner = n > 0 && n < last - 1;
+    let before = select(d, x0 - hairlut_fetch(axis.table, max(n - 1, 0), row), n > 0);
+    let after = select(d, hairlut_fetch(axis.table, min(n + 2, last), row) - x1, n < last - 1);
+    let bound = axis.limit * d;
+    let c = clamp(select(1.0, 0.25, inner) * (before - after), -bound, bound);
+    return select(vec3f(x0, d, c), vec3f(x1, -d, c), high);
 }
 
-/* Widths are taken in each row before they are blended: neighbouring texels subtract without rounding. */
-fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32) -> hairlut_cell {
-    let a = hairlut_widths(axis, rows.row, i);
-    let b = hairlut_widths(axis, rows.row + 1, i);
-    let d = hairlut_blend_width(a.y, b.y, rows.t);
-    let before = hairlut_blend_width(a.x, b.x, rows.t);
-    let after = hairlut_blend_width(a.z, b.z, rows.t);
-    let bound = axis.limit * d;
-    return hairlut_cell(hairlut_blend(a.w, b.w, rows.t), d, clamp(0.25 * (before - after), -bound, bound));
+/* Cell i, counted from the low or the high end. Each row's cell is taken before they are blended: neighbouring texels subtract
+ * without rounding. */
+fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32, high: bool) -> hairlut_cell {
+    let n = select(i, axis.columns - 2 - i, high);
+    let a = hairlut_row_cell(axis, rows.row, n, high);
+    let b = hairlut_row_cell(axis, rows.row + 1, n, high);
+    return hairlut_cell(hairlut_blend_part(a.x, b.x, rows.t), hairlut_blend_part(a.y, b.y, rows.t),
+                        hairlut_blend_part(a.z, b.z, rows.t));
 }
 
 /* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */
@@ -212,38 +211,36 @@ fn hairlut_axis_knot(axis: hairlut_axis, number: f32) -> hairlut_knot {
     }
     c = clamp(c, 0.0, 0.5 * f32(axis.columns - 1));
     let i = i32(c);
-    let f = c - f32(i);
-    if (u > 0.5) {
-        return hairlut_knot(axis.columns - 2 - i, 1.0 - f, du);
-    }
-    return hairlut_knot(i, f, du);
+    return hairlut_knot(i, u > 0.5, c - f32(i), du);
 }
 
-/* Distances, in columns, of a place from both ends of the axis; the smaller one is the folded column. */
-fn hairlut_from_ends(axis: hairlut_axis, i: i32, f: f32) -> vec2f {
-    return vec2f(f32(i) + f, f32(axis.columns - 2 - i) + (1.0 - f));
+/* (column, its mirror image) of a place in cell i, counted from one end. */
+fn hairlut_columns(axis: hairlut_axis, i: i32, f: f32) -> vec2f {
+    let column = f32(i) + f;
+    return vec2f(column, f32(axis.columns - 1) - column);
 }
 
-/* du/dcolumn at a place given by cell and fraction. */
+/* du/dcolumn at a place given by cell and fraction. The middle cell of an even number of columns is seen from the low end; beyond
+ * its middle the high end is nearer. */
 fn hairlut_axis_du(axis: hairlut_axis, i: i32, f: f32) -> f32 {
     if (axis.warp != hairlut_warp_quartic) {
         return axis.k;
     }
-    let ends = hairlut_from_ends(axis, i, f);
-    let y = axis.f0 + axis.k * min(ends.x, ends.y);
+    let columns = hairlut_columns(axis, i, f);
+    let y = axis.f0 + axis.k * min(columns.x, columns.y);
     return 4.0 * axis.k * (y * (y * y));
 }
 
 /* Column to u. */
-fn hairlut_axis_u(axis: hairlut_axis, i: i32, f: f32) -> f32 {
-    let ends = hairlut_from_ends(axis, i, f);
-    var m = axis.k * min(ends.x, ends.y);
+fn hairlut_axis_u(axis: hairlut_axis, i: i32, high: bool, f: f32) -> f32 {
+    let columns = hairlut_columns(axis, i, f);
+    var m = axis.k * min(columns.x, columns.y);
     if (axis.warp == hairlut_warp_quartic) {
         let y = axis.f0 + m;
         m *= (y + axis.f0) * (y * y + axis.f0 * axis.f0); // y^4 - f0^4 without its cancellation
     }
     m = clamp(m, 0.0, 0.5);
-    return select(1.0 - m, m, ends.x <= ends.y);
+    return select(m, 1.0 - m, high || columns.y < columns.x);
 }
 
 /* The cell whose blended texels enclose x. */
@@ -260,21 +257,24 @@ fn hairlut_axis_find(axis: hairlut_axis, rows: hairlut_rows, x: f32) -> i32 {
     return i;
 }
 
-/* (fraction of a cell at which x lies, dx/df there). The root of the quadratic is that slope, written as the slope at the
+/* (fraction of a cell at which x lies, |dx/df| there). The root of the quadratic is that slope, written as the slope at the
  * cell's flatter end and the distance from there, which cancels nothing. */
 fn hairlut_cell_solve(cell: hairlut_cell, x: f32) -> vec2f {
-    let d = clamp(x - cell.x0, 0.0, cell.d);
-    let flat_slope = cell.d - abs(cell.c);
-    let away = select(d, cell.d - d, cell.c > 0.0);
-    let slope = sqrt(flat_slope * flat_slope + 4.0 * abs(cell.c) * away);
-    return vec2f(min(2.0 * d / (cell.d + cell.c + slope), 1.0), slope);
+    let falls = cell.d < 0.0;
+    let d = abs(cell.d);
+    let c = select(cell.c, -cell.c, falls);
+    let along = clamp(select(x - cell.x0, cell.x0 - x, falls), 0.0, d);
+    let flat_slope = d - abs(c);
+    let away = select(along, d - along, c > 0.0);
+    let slope = sqrt(flat_slope * flat_slope + 4.0 * abs(c) * away);
+    return vec2f(min(2.0 * along / (d + c + slope), 1.0), slope);
 }
 
 fn hairlut_axis_sample(axis: hairlut_axis, theta_r: f32, u: f32) -> hairlut_draw {
     let knot = hairlut_axis_knot(axis, u);
-    let cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i);
+    let cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i, knot.high);
     let x = cell.x0 + knot.f * (cell.d + cell.c * (1.0 - knot.f));
-    let slope = cell.d + cell.c * (1.0 - 2.0 * knot.f);
+    let slope = abs(cell.d + cell.c * (1.0 - 2.0 * knot.f));
     return hairlut_draw(clamp(x, axis.low, axis.high), knot.du / slope);
 }
 
@@ -284,8 +284,10 @@ fn hairlut_axis_pdf(axis: hairlut_axis, theta_r: f32, x: f32) -> f32 {
         return 0.0;
     }
     let rows = hairlut_axis_rows(axis, theta_r);
-    let i = hairlut_axis_find(axis, rows, x);
-    let place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i), x);
+    let n = hairlut_axis_find(axis, rows, x);
+    let high = n >= axis.columns / 2;
+    let i = select(n, axis.columns - 2 - n, high);
+    let place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
     return hairlut_axis_du(axis, i, place.x) / place.y;
 }
 
@@ -293,9 +295,11 @@ fn hairlut_axis_pdf(axis: hairlut_axis, theta_r: f32, x: f32) -> f32 {
 fn hairlut_axis_invert(axis: hairlut_axis, theta_r: f32, number: f32) -> f32 {
     let x = hairlut_tame(number, axis.low);
     let rows = hairlut_axis_rows(axis, theta_r);
-    let i = hairlut_axis_find(axis, rows, x);
-    let place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i), x);
-    return hairlut_axis_u(axis, i, place.x);
+    let n = hairlut_axis_find(axis, rows, x);
+    let high = n >= axis.columns / 2;
+    let i = select(n, axis.columns - 2 - n, high);
+    let place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
+    return hairlut_axis_u(axis, i, high, place.x);
 }
 
 /* ---- the two lobes -------------------------------------------------------------------------------------------- */

@@ -66,7 +66,11 @@ def test_agrees_with_c_on_other_tables(backend: str, shape: str):
 # One wrong step each; the comparison must notice all of them.
 MUTANTS = {
     "linear cells": ("axis.limit * d", "0.0 * d"),
-    "end cells without their rule": ("before = 4.0 * d - 3.0 * after", "before = d"),
+    "end cells without their rule": ("inner ? 0.25 : 1.0", "0.25"),
+    "curvature not clamped": (
+        "clamp((inner ? 0.25 : 1.0) * (before - after), -bound, bound)",
+        "(inner ? 0.25 : 1.0) * (before - after)",
+    ),
     "rows blended with 8 bits": ("(row, r - float(row))", "(row, floor((r - float(row)) * 256.0) / 256.0)"),
     "upper tail not folded": ("u <= 0.5 ? u : 1.0 - u", "u"),
     "difference taken for sum": ("? phi - r : phi + r", "? phi + r : phi - r"),

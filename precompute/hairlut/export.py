@@ -41,12 +41,13 @@ def export_c(directories: Sequence[Path], out: Path) -> Path:
     names = [tables[0].model for tables in models]
     if len({_identifier(name) for name in names}) < len(names):
         raise HairlutError(f"models {', '.join(names)}: expected a different name for each directory")
+    arrays = _arrays(models)
     parts = [
         f"/* By hairlut {__version__} (export --to c) from {', '.join(names)}; not to be edited. */",
         '#include "internal.h"',
-        *(_arrays(table) for tables in models for table in tables),
+        *(_definitions(name, table) for name, table in arrays.values()),
         "const hairlut_builtin_entry hairlut_builtin_entries[] = {",
-        *(_entry(tables) for tables in models),
+        *(_entry(tables, arrays) for tables in models),
         "};",
         f"const int hairlut_builtin_count = {len(models)};",
     ]
@@ -105,8 +106,20 @@ def _identifier(name: str) -> str:
     return re.sub(r"\W", "_", name, flags=re.ASCII)
 
 
-def _array(table: Table) -> str:
-    return f"hairlut_{_identifier(table.model)}_{table.name}"
+Arrays = dict[tuple[bytes, int, float], tuple[str, Table]]
+
+
+def _content(table: Table) -> tuple[bytes, int, float]:
+    """What a table's arrays follow from."""
+    return table.texels.tobytes(), table.width, table.cell.limit
+
+
+def _arrays(models: Sequence[Sequence[Table]]) -> Arrays:
+    """(name, table) of every array that is needed: tables of the same content share one."""
+    arrays: Arrays = {}
+    for table in (table for tables in models for table in tables):
+        arrays.setdefault(_content(table), (f"hairlut_{_identifier(table.model)}_{table.name}", table))
+    return arrays
 
 
 def _literal(x: float) -> str:
@@ -149,9 +162,9 @@ def _cells(table: Table) -> np.ndarray:
     return np.pad(cells, ((0, 0), (0, 0), (0, 1))).reshape(2 * half, -1)
 
 
-def _arrays(table: Table) -> str:
-    """The definitions of a table's rows and cells."""
-    size, name = f"({table.width}, {table.height})", _array(table)
+def _definitions(name: str, table: Table) -> str:
+    """The arrays of a table's rows and cells."""
+    size = f"({table.width}, {table.height})"
     return "\n".join(
         f"static const float HAIRLUT_LINE_ALIGNED {name}_{part}[{macro}{size}] = {{\n"
         + ",\n".join(",".join(map(_literal, row)) for row in numbers)
@@ -163,18 +176,18 @@ def _arrays(table: Table) -> str:
     )
 
 
-def _axis(table: Table) -> str:
+def _axis(table: Table, name: str) -> str:
     numbers = axis_numbers(table)
     before = numbers[AXIS.index("row_origin") : AXIS.index("e")]
     after = numbers[AXIS.index("e") : AXIS.index("limit")]
     return (
-        f"HAIRLUT_AXIS({_array(table)}_rows, {_array(table)}_cells, {table.width}, {table.height}, {', '.join(map(_literal, before))}, "
-        f"{WARPS[table.warp.name]}, {', '.join(map(_literal, after))})"
+        f"HAIRLUT_AXIS({name}_rows, {name}_cells, {table.width}, {table.height}, "
+        f"{', '.join(map(_literal, before))}, {WARPS[table.warp.name]}, {', '.join(map(_literal, after))})"
     )
 
 
-def _entry(tables: Sequence[Table]) -> str:
-    axes = ",\n      ".join(map(_axis, tables))
+def _entry(tables: Sequence[Table], arrays: Arrays) -> str:
+    axes = ",\n      ".join(_axis(table, arrays[_content(table)][0]) for table in tables)
     return (
         f'    {{"{tables[0].model}",\n     {{{axes},\n      {AZIMUTHS[tables[1].azimuth]}, {{0, 0, 0}}}}}},'
     )

@@ -13,15 +13,15 @@ from runtime.c_library import BUILD, ROOT, RUNTIME, run, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    "sample_direct": 389,
-    "sample_multiple": 239,
-    "pdf_direct": 624,
-    "pdf_multiple": 290,
-    "sample_direct_n": 47,
-    "sample_multiple_n": 27,
-    "pdf_direct_n": 139,
+    "sample_direct": 294,
+    "sample_multiple": 199,
+    "pdf_direct": 595,
+    "pdf_multiple": 288,
+    "sample_direct_n": 40,
+    "sample_multiple_n": 22,
+    "pdf_direct_n": 135,
     "pdf_multiple_n": 65,
-    "sample_mixture_n": 370,
+    "sample_mixture_n": 356,
 }
 
 

@@ -23,8 +23,11 @@ def floats(text):
 
 def array(source, table, part):
     """(H+1, n) the numbers of one of a table's arrays."""
-    name = f"hairlut_{table.model}_{table.name}_{part}"
-    text = re.search(rf"static const float [\w ]*{name}\[.*?\] = \{{\n(.*?)\}};", source, re.DOTALL)[1]
+    entry = source[source.index(f'{{"{table.model}",') :]
+    axes = re.findall(r"HAIRLUT_AXIS\((\w+)_rows, (\w+)_cells, ", entry)[:3]
+    rows, cells = axes[export.TABLES.index(table.name)]
+    assert rows == cells
+    text = re.search(rf"static const float [\w ]*{rows}_{part}\[.*?\] = \{{\n(.*?)\}};", source, re.DOTALL)[1]
     return np.array([floats(line) for line in text.split("\n")])
 
 
@@ -59,6 +62,14 @@ def test_cells_are_those_of_the_interpolant_from_both_ends(source, shipped):
             assert np.abs(sign * d - exact.d[:, i]).max() <= step
             assert np.abs(c - exact.c[:, i]).max() <= 3 * step  # the limit is a float too
             assert (unused == 0).all()
+
+
+def test_tables_of_the_same_content_stand_in_it_once(source):
+    """Both models have the same azimuth and the same multiple lobe."""
+    names = re.findall(r"(\w+)_rows\[", source)
+    assert names == [
+        f"hairlut_{n}" for n in ("printed_direct_theta", "printed_direct_phi", "printed_multiple_theta")
+    ] + ["hairlut_fitted_direct_theta"]
 
 
 def test_every_model_is_named_once_and_in_order(source):

@@ -14,7 +14,7 @@
  * Both are the density of exactly what the library samples: the derivative of the interpolated inverse CDF, not the
  * formula of the lobe that was tabulated. An estimator that divides by it is unbiased for every table, coarse or fine.
  *
- * Rules for every function on the sampling path (sample, pdf, invert, mixture, the _n forms):
+ * Rules for every function on the sampling path (sample, pdf, invert, mixture, components, the _n forms):
  *   - no finite input gives NaN or infinity. u outside [0,1] and theta_r outside its range are clamped; an azimuth of
  *     any finite size is reduced modulo 2 pi (beyond 2^24 rad a float holds no azimuth, and the result is merely valid).
  *   - NaN in any argument, or an infinite azimuth, gives a density of 0, with finite angles inside their ranges.

@@ -2,6 +2,8 @@
  *
  *   model          string  "fitted" (default), "printed", or a directory that holds the three EXR files of a model
  *   direct_weight  float   probability of the direct lobe against the multiple lobe, in [0,1] (default 0.5)
+ *   family         string  in place of model: a directory with the family.txt and the baked models of a hair whose
+ *                          scattering depends on the offset at which the fibre is hit (hairlut fit, hairlut bake)
  *   nested_weight  float   probability of the nested BSDF's own sampling, in [0,1] (default 0)
  *   uniform        boolean draw uniformly from the sphere in place of the tables, for comparison (default false)
  *   light_sampling boolean false claims Dirac samples, so that integrators find light by this BSDF's sampling alone, for
@@ -23,6 +25,9 @@
 
 #include <hairlut.h>
 
+#include "family.h"
+#include "tables.h"
+
 NAMESPACE_BEGIN(mitsuba)
 
 namespace {
@@ -40,38 +45,6 @@ template <typename Vector> Angles angles_of(const Vector &w) {
     return a;
 }
 
-/// Compiled-in tables need no release, loaded ones do.
-class Tables {
-public:
-    explicit Tables(const std::string &model) : m_model(hairlut_builtin(model.c_str())) {
-        if (!m_model)
-            load(model);
-    }
-    const hairlut_model *get() const { return m_model; }
-
-private:
-    struct Release {
-        void operator()(hairlut_model *model) const { hairlut_free(model); }
-    };
-    void load(const std::string &directory) {
-        hairlut_model *loaded = nullptr;
-        char message[HAIRLUT_MESSAGE_SIZE] = "";
-#ifdef HAIRLUT_WITHOUT_EXR
-        const hairlut_result result = HAIRLUT_ERROR_UNSUPPORTED;
-#else
-        const hairlut_result result = hairlut_load_with(directory.c_str(), nullptr, &loaded, message);
-#endif
-        if (result != HAIRLUT_OK)
-            Throw("hairlut: model \"%s\" is neither \"printed\" nor \"fitted\" nor a directory of tables: %s (%s)",
-                  directory, message, hairlut_result_string(result));
-        m_loaded.reset(loaded);
-        m_model = loaded;
-    }
-
-    std::unique_ptr<hairlut_model, Release> m_loaded;
-    const hairlut_model *m_model;
-};
-
 } // namespace
 
 template <typename Float, typename Spectrum> class HairlutBSDF final : public BSDF<Float, Spectrum> {
@@ -79,9 +52,8 @@ public:
     MI_IMPORT_BASE(BSDF, m_flags, m_components)
     MI_IMPORT_TYPES()
 
-    explicit HairlutBSDF(const Properties &props)
-        : Base(props), m_name(props.get<std::string>("model", "fitted")), m_tables(m_name) {
-        m_direct_weight = probability(props, "direct_weight", .5f);
+    explicit HairlutBSDF(const Properties &props) : Base(props) {
+        load(props);
         m_nested_weight = probability(props, "nested_weight", 0.f);
         m_uniform = props.get<bool>("uniform", false);
         for (auto &prop : props.objects())
@@ -154,7 +126,7 @@ public:
     std::string to_string() const override {
         std::ostringstream oss;
         oss << "HairlutBSDF[" << std::endl
-            << "  model = " << m_name << "," << std::endl
+            << (m_family ? "  family = " : "  model = ") << m_name << "," << std::endl
             << "  direct_weight = " << m_direct_weight << "," << std::endl
             << "  nested_weight = " << m_nested_weight << "," << std::endl
             << "  uniform = " << m_uniform << "," << std::endl
@@ -175,13 +147,29 @@ private:
         return p;
     }
 
+    /// The tables that directions are drawn from: of one model, or of a family.
+    void load(const Properties &props) {
+        m_direct_weight = probability(props, "direct_weight", .5f);
+        if (!props.has_property("family")) {
+            m_name = props.get<std::string>("model", "fitted");
+            m_tables = std::make_unique<HairlutTables>(m_name);
+            return;
+        }
+        for (const char *other : { "model", "direct_weight" })
+            if (props.has_property(other))
+                Throw("hairlut: %s is given beside family, which brings its own: remove one of the two", other);
+        m_name = props.get<std::string>("family");
+        m_family = std::make_unique<HairlutFamily>(m_name);
+    }
+
     /// A direction from the tables, or from the whole sphere.
     Vector3f propose(const SurfaceInteraction3f &si, Float u_lobe, const Point2f &u) const {
         if (m_uniform)
             return warp::square_to_uniform_sphere(u);
         const Angles r = angles_of(si.wi);
         const hairlut_sample s =
-            hairlut_sample_mixture(m_tables.get(), m_direct_weight, r.theta, r.phi, u_lobe, u.x(), u.y());
+            m_family ? m_family->sample(r.theta, r.phi, u_lobe, u.x(), u.y())
+                     : hairlut_sample_mixture(m_tables->get(), m_direct_weight, r.theta, r.phi, u_lobe, u.x(), u.y());
         float wo[3];
         hairlut_direction(&local_frame, s.theta_i, s.phi_i, wo);
         return { wo[0], wo[1], wo[2] };
@@ -193,7 +181,9 @@ private:
             return warp::square_to_uniform_sphere_pdf(wo);
         const Angles r = angles_of(si.wi), i = angles_of(wo);
         return hairlut_pdf_to_solid_angle(
-            hairlut_pdf_mixture(m_tables.get(), m_direct_weight, r.theta, r.phi, i.theta, i.phi), i.theta);
+            m_family ? m_family->pdf(r.theta, r.phi, i.theta, i.phi)
+                     : hairlut_pdf_mixture(m_tables->get(), m_direct_weight, r.theta, r.phi, i.theta, i.phi),
+            i.theta);
     }
 
     Float mix(Float nested_pdf, const SurfaceInteraction3f &si, const Vector3f &wo) const {
@@ -203,7 +193,8 @@ private:
     }
 
     std::string m_name;
-    Tables m_tables;
+    std::unique_ptr<HairlutTables> m_tables; // this one or the next
+    std::unique_ptr<HairlutFamily> m_family;
     float m_direct_weight, m_nested_weight;
     bool m_uniform;
     uint32_t m_sampled_type;

@@ -2,10 +2,11 @@
 
     .venv/bin/python runtime/mitsuba/fitted_hair.py [--draws N] --out luts/report/fit.json
 
-For each hair: evaluate the BSDF on a grid (theta_r, theta_i, phi, and the offset at which the fibre is
-hit), average it over the offset, fit, bake, and draw from the tables through the plugin: hairlut's C
-library proposes, the BSDF gives the value. The estimates are of the light that the fibre scatters towards a
-viewer, at a random offset, from an environment of constant and of contrasted radiance.
+For each hair: evaluate the BSDF on a grid (theta_r, theta_i, phi, and the offset at which the fibre is hit).
+Fit and bake one model to its mean over the offset, and a family of models over the offset. Draw from the
+tables through the plugin: hairlut's C library proposes, the BSDF gives the value. The estimates are of the
+light that the fibre scatters towards a viewer, at a random offset, from an environment of constant and of
+contrasted radiance; a quadrature of the BSDF says what they should be.
 """
 
 from __future__ import annotations
@@ -14,19 +15,27 @@ import argparse
 import json
 import math
 import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 import numpy as np
+from hairscene import owndensity
+from hairscene.nearfield import REACH, contrasted, direction, evaluate, light, midpoints
+from hairscene.offsets import left
 from hairscene.scene import Hair, scene_dict, strand_points, write_strands
 
 from hairlut import cli
 from hairlut.distribution import of_grid
+from hairlut.family import fit_family
+from hairlut.familyfiles import write_family
 from hairlut.files import write_whole
 from hairlut.fit import Fit, fit
 from hairlut.fitfiles import write_all
 from hairlut.fitplot import plot
+from hairlut.offsets import OffsetData, of_grids
 
 HAIRS = {
     "brown": {},
@@ -49,100 +58,109 @@ HAIRS = {
         "azimuthal_roughness": 0.8,
     },
 }
-IMAGE, STRANDS, SPP, BATCHES = (64, 48), 4000, 16, 12
-VIEWERS = (0.0, 30.0, -60.0)
-SIZE = "96x37"  # rows every 5 degrees: the grid's are among them
-THETA_R = np.radians(np.arange(-85.0, 86.0, 10.0))
-THETA_I = (np.arange(64) + 0.5) / 64 * np.pi - np.pi / 2
-PHI = (np.arange(72) + 0.5) / 72 * 2 * np.pi
-OFFSETS = 16
-# The offset h = sin(gamma) is uniform over a fibre's width; even steps in gamma resolve its rims.
-GAMMA = (np.arange(OFFSETS) + 0.5) / OFFSETS * np.pi / 2
-WEIGHT = np.cos(GAMMA) / np.cos(GAMMA).sum()
+IMAGE, STRANDS, SPP, BATCHES = (64, 48), 4000, 16, 24
+VIEWERS = (2.5, 32.5, -57.5)  # between the rows of the grid
+SIZE, FAMILY_SIZE = "96x37", "64x37"  # rows every 5 degrees: the grid's are among them
+THETA_R = np.radians(np.arange(-85.0, 86.0, 5.0))
+THETA_I, PHI = midpoints(-math.pi / 2, math.pi / 2, 64), midpoints(0, 2 * math.pi, 72)
+# The offset sin(gamma) is uniform over a fibre's width; even steps in gamma resolve its rims.
+GAMMA = np.linspace(0, math.pi / 2, 17)
+LIGHTS = ("constant", "contrasted")
+OWN = {"half tables, half its own": 0.5, "its own": 1.0}  # share of the engine's own draws
 
 
-def direction(mi: Any, theta: float, phi: float):
-    """Local direction: the fibre along y, phi from z (the surface normal) towards x."""
-    return mi.Vector3f(math.cos(theta) * math.sin(phi), math.sin(theta), math.cos(theta) * math.cos(phi))
+def share_of(gamma: np.ndarray) -> np.ndarray:
+    """(offsets,) shares of the fibre's width around even gamma from 0 to the rim."""
+    width = np.cos(gamma) * np.where((gamma == gamma[0]) | (gamma == gamma[-1]), 0.5, 1.0)
+    return width / width.sum()
 
 
-def evaluate(mi: Any, bsdf: Any, theta_r=THETA_R, theta_i=THETA_I, phi=PHI, gamma=GAMMA) -> np.ndarray:
-    """Grey values per steradian, cosine included, (offsets, J, n, m), at the relative azimuths phi."""
-    si, context = mi.SurfaceInteraction3f(), mi.BSDFContext()
-    values = np.empty((len(gamma), len(theta_r), len(theta_i), len(phi)))
-    for g, at in enumerate(gamma):
-        incident = [[direction(mi, t, p + at) for p in phi] for t in theta_i]
-        for j, t_r in enumerate(theta_r):
-            si.wi = direction(mi, t_r, at)
-            values[g, j] = [[sum(bsdf.eval(context, si, w)) / 3 for w in row] for row in incident]
-    return values
-
-
-def far_field(values: np.ndarray, weight=WEIGHT) -> np.ndarray:
+def far_field(values: np.ndarray, gamma: np.ndarray = GAMMA) -> np.ndarray:
     """(J, n, m) the mean over all offsets; those of the other half mirror the azimuth."""
-    mean = np.tensordot(weight, values, 1)
+    mean = np.tensordot(share_of(gamma), values, 1)
     return (mean + mean[..., ::-1]) / 2
-
-
-def per_offset(values: np.ndarray, weight=WEIGHT) -> float:
-    """Relative variance, mean over theta_r, that a model of its own for each offset would leave."""
-    fits = [fit(of_grid(THETA_R, THETA_I, PHI, value, per_steradian=True)) for value in values]
-    measure = np.diff(np.sin(fits[0].data.theta_edges))[:, None] * np.diff(fits[0].data.phi_edges)
-    light = (values * measure).sum(axis=(2, 3))
-    mean = weight @ light
-    second = sum(w * own**2 * (1 + f.masses) for w, own, f in zip(weight, light, fits, strict=True))
-    return float((second / mean**2 - 1).mean())
 
 
 def bake(found: Fit, name: str, folder: Path) -> Path:
     """Bakes the fit's masses; the model's directory."""
     masses = write_all(found, folder, name)[0]
-    if cli.main(["bake", "--model", str(masses), "--size", SIZE, "--out", str(folder)]):
-        raise RuntimeError(f"{masses} does not bake")
+    _bake(masses, SIZE, folder)
     return folder / masses.stem
 
 
-def samplers(nested: dict, tables: Path, weight: float) -> dict[str, dict]:
+def bake_family(data: OffsetData, name: str, folder: Path) -> tuple[Path, float]:
+    """Fits and bakes a family, one model at a time; its directory, and the seconds that the fit took."""
+    start = perf_counter()
+    family = fit_family(data)
+    seconds = perf_counter() - start
+    write_family(family, folder / f"{name}_models")
+    baked = folder / f"{name}_family"
+    _bake(folder / f"{name}_models", FAMILY_SIZE, baked)
+    return baked, seconds
+
+
+def _bake(model: Path, size: str, out: Path) -> None:
+    if cli.main(["bake", "--model", str(model), "--size", size, "--jobs", "1", "--out", str(out)]):
+        raise RuntimeError(f"{model} does not bake")
+
+
+def samplers(nested: dict, tables: Path, weight: float, family: Path) -> dict[str, dict]:
     """BSDF dictionaries by what proposes directions; all have the same values."""
     plugin = {"type": "hairlut", "nested": nested}
+    fitted = {**plugin, "model": str(tables), "direct_weight": weight}
     return {
         "uniform": {**plugin, "uniform": True},
         "built-in tables": {**plugin, "model": "fitted"},
-        "tables fitted to it": {**plugin, "model": str(tables), "direct_weight": weight},
-        "half tables, half its own": {
-            **plugin,
-            "model": str(tables),
-            "direct_weight": weight,
-            "nested_weight": 0.5,
-        },
+        "one fitted model": fitted,
+        "family over offsets": {**plugin, "family": str(family)},
+        "half tables, half its own": {**fitted, "nested_weight": 0.5},
         "its own": nested,
     }
 
 
-def contrasted(w: np.ndarray) -> np.ndarray:
-    """Radiance from w (N, 3): dim, with a window and a small lamp."""
-    window = np.exp(10 * (w @ _unit(0.5, 0.4, 0.77) - 1))
-    lamp = np.exp(60 * (w @ _unit(-0.3, -0.5, -0.8) - 1))
-    return 0.1 + 2 * window + 8 * lamp
+@dataclass(frozen=True)
+class Draws:
+    """N draws at random offsets: weight (N,) value over density, density (N,) per steradian, gamma (N,), wo
+    (N, 3); seconds a draw took, Python's share of it included."""
+
+    weight: np.ndarray
+    density: np.ndarray
+    gamma: np.ndarray
+    wo: np.ndarray
+    seconds: float
+
+    def estimates(self) -> np.ndarray:
+        """(2, N) single estimates of the light: constant radiance, then contrasted."""
+        return np.stack([self.weight, self.weight * contrasted(self.wo)])
 
 
-def _unit(*v: float) -> np.ndarray:
-    return np.array(v) / np.linalg.norm(v)
-
-
-def estimates(mi: Any, bsdf: Any, theta_r: float, draws: int, seed: int) -> np.ndarray:
-    """(2, draws) single estimates of the light towards theta_r: constant radiance, then contrasted."""
-    rng = np.random.default_rng(seed)
-    numbers = rng.random((draws, 4), dtype=np.float32)
-    numbers[:, 3] = np.arcsin(0.998 * (2 * numbers[:, 3] - 1))
+def draw(mi: Any, bsdf: Any, theta_r: float, count: int, seed: Sequence[int]) -> Draws:
+    numbers = np.random.default_rng(seed).random((count, 4), dtype=np.float32)
+    numbers[:, 3] = np.arcsin(math.sin(REACH) * (2 * numbers[:, 3] - 1))
     si, context, point = mi.SurfaceInteraction3f(), mi.BSDFContext(), mi.Point2f
-    weight, wo = np.empty(draws), np.empty((draws, 3))
+    weight, density, wo = np.empty(count), np.empty(count), np.empty((count, 3))
+    start = perf_counter()
     for n, (a, b, c, gamma) in enumerate(numbers.tolist()):
         si.wi = direction(mi, theta_r, gamma)
         sample, value = bsdf.sample(context, si, a, point(b, c))
-        weight[n], w = sum(value) / 3, sample.wo
+        weight[n], density[n], w = sum(value) / 3, sample.pdf, sample.wo
         wo[n] = w.x, w.y, w.z
-    return np.stack([weight, weight * contrasted(wo)])
+    return Draws(weight, density, numbers[:, 3], wo, (perf_counter() - start) / count)
+
+
+def corrected(mi: Any, drawn: Draws, hair: dict, theta_r: float, own: float) -> Draws:
+    """The draws with the density that they really have (owndensity.py), those of the atom without weight.
+
+    own: share of the draws that are the engine's, by the BSDF hair.
+    """
+    bsdf, si, context = mi.load_dict({"type": "hair", **hair}), mi.SurfaceInteraction3f(), mi.BSDFContext()
+    said = np.empty(len(drawn.wo))
+    for n, (gamma, w) in enumerate(zip(drawn.gamma.tolist(), drawn.wo.tolist(), strict=True)):
+        si.wi = direction(mi, theta_r, gamma)
+        said[n] = bsdf.pdf(context, si, mi.Vector3f(*w))
+    true = drawn.density + own * (owndensity.density(hair, theta_r, drawn.gamma, drawn.wo) - said)
+    weight = np.where(owndensity.is_atom(drawn.wo), 0.0, drawn.weight * drawn.density / true)
+    return Draws(weight, true, drawn.gamma, drawn.wo, drawn.seconds)
 
 
 def compare(mi: Any, name: str, folder: Path, draws: int, pictures: Path) -> dict:
@@ -150,53 +168,85 @@ def compare(mi: Any, name: str, folder: Path, draws: int, pictures: Path) -> dic
     strands = folder / "strands.txt"
     write_strands(strand_points(Hair(strands=STRANDS)), strands)
     nested = {"type": "hair", **HAIRS[name]}
-    start = perf_counter()
-    values = evaluate(mi, mi.load_dict(nested))
-    evaluated = perf_counter()
+    own = mi.load_dict(nested)
+    clock = [perf_counter()]
+    values = evaluate(mi, own, THETA_R, THETA_I, PHI, GAMMA)
+    clock.append(perf_counter())
     found = fit(of_grid(THETA_R, THETA_I, PHI, far_field(values), per_steradian=True))
-    fitted = perf_counter()
-    write_whole(pictures / f"fit_{name}.png", plot(found, name))
+    clock.append(perf_counter())
     tables = bake(found, name, folder)
-    baked = perf_counter()
-    kinds = samplers(nested, tables, found.split.direct_weight)
-    rows = []
-    for viewer in VIEWERS:
-        drawn = {
-            kind: estimates(mi, mi.load_dict(bsdf), math.radians(viewer), draws, seed)
-            for seed, (kind, bsdf) in enumerate(kinds.items())
-        }
-        rows.append({"theta_r_deg": viewer, **{kind: statistics(values) for kind, values in drawn.items()}})
+    clock.append(perf_counter())
+    data = of_grids(np.sin(GAMMA), THETA_R, THETA_I, PHI, values, per_steradian=True)
+    family, fit_seconds = bake_family(data, name, folder)
+    clock.append(perf_counter())
+    write_whole(pictures / f"fit_{name}.png", plot(found, name))
+    kinds = samplers(nested, tables, found.split.direct_weight, family)
+    steps = dict(zip(("evaluate", "fit", "bake", "family"), np.diff(clock).tolist(), strict=True))
     return {
         "parameters": nested,
-        "seconds": {"evaluate": evaluated - start, "fit": fitted - evaluated, "bake": baked - fitted},
-        "bytes": sum(path.stat().st_size for path in tables.glob("*.exr")),
+        "seconds": {**steps, "family_fit": fit_seconds, "family_bake": steps["family"] - fit_seconds},
+        "bytes": {"model": size_of(tables), "family": size_of(family)},
         "direct_weight": found.split.direct_weight,
         "predicted": {
             "uniform": float(found.uniform.mean()),
             "marginals": float(found.marginal.mean()),
             "masses": float(found.masses.mean()),
-            "per_offset": per_offset(values),
         },
-        "viewers": rows,
+        "by_offset": left(mi, own),
+        "viewers": [towards(mi, viewer, HAIRS[name], kinds, draws) for viewer in VIEWERS],
         "render": render(mi, kinds, strands),
     }
 
 
+def size_of(folder: Path) -> int:
+    """Bytes of the textures in folder and of what says how to draw from them."""
+    return sum(path.stat().st_size for end in ("*.exr", "family.txt") for path in folder.rglob(end))
+
+
+def towards(mi: Any, viewer: float, hair: dict, kinds: dict[str, dict], draws: int) -> dict:
+    """What every sampler estimates towards one viewer (deg), and the light by quadrature."""
+    theta_r = math.radians(viewer)
+    exact, error = light(mi, mi.load_dict({"type": "hair", **hair}), theta_r)
+    row = {
+        "theta_r_deg": viewer,
+        "light": {key: {"mean": m, "error": e} for key, m, e in zip(LIGHTS, exact, error, strict=True)},
+    }
+    for k, (kind, bsdf) in enumerate(kinds.items()):
+        seed = [k, list(HAIRS.values()).index(hair), round(viewer * 2) % 720]
+        drawn = draw(mi, mi.load_dict(bsdf), theta_r, draws, seed)
+        row[kind] = {**statistics(drawn.estimates()), "seconds": drawn.seconds}
+        if kind in OWN:
+            row[kind]["atom"] = float(owndensity.is_atom(drawn.wo).mean())
+            row[kind]["corrected"] = statistics(corrected(mi, drawn, hair, theta_r, OWN[kind]).estimates())
+    return row
+
+
 def render(mi: Any, kinds: dict[str, dict], strands: Path) -> dict:
-    """One scattering found by BSDF sampling alone, sky and lamps: the image's mean, its standard error,
-    and the mean variance of a pixel at one sample, relative to the square of the image's mean."""
+    """One scattering found by BSDF sampling alone, sky and lamps: the image's mean, its standard error, the
+    mean variance of a pixel at one sample relative to the square of the image's mean, its own standard error
+    (jackknife over the batches), and the seconds that all batches took."""
     report = {}
     for kind, bsdf in kinds.items():
         integrator = {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1}
         scene = mi.load_dict({**scene_dict(mi, strands, bsdf, IMAGE, True), "integrator": integrator})
+        start = perf_counter()
         images = np.array([np.array(mi.render(scene, spp=SPP, seed=k)).mean(axis=2) for k in range(BATCHES)])
+        seconds = perf_counter() - start
         means = images.mean(axis=(1, 2))
+        others = np.array([relative_variance(np.delete(images, k, axis=0)) for k in range(BATCHES)])
         report[kind] = {
             "mean": float(means.mean()),
             "standard_error": float(means.std(ddof=1) / np.sqrt(BATCHES)),
-            "relative_variance": float(SPP * images.var(axis=0, ddof=1).mean() / means.mean() ** 2),
+            "relative_variance": relative_variance(images),
+            "variance_error": float(np.sqrt((BATCHES - 1) * others.var())),
+            "seconds": seconds,
         }
     return report
+
+
+def relative_variance(images: np.ndarray) -> float:
+    """Of a pixel at one sample, relative to the squared mean of the images (batches, height, width)."""
+    return float(SPP * images.var(axis=0, ddof=1).mean() / images.mean() ** 2)
 
 
 def statistics(values: np.ndarray) -> dict:
@@ -208,7 +258,7 @@ def statistics(values: np.ndarray) -> dict:
             "standard_error": float(np.sqrt(spread[k] / values.shape[1])),
             "relative_variance": float(spread[k] / mean[k] ** 2),
         }
-        for k, light in enumerate(("constant", "contrasted"))
+        for k, light in enumerate(LIGHTS)
     }
 
 
@@ -216,7 +266,7 @@ def main() -> int:
     from hairscene.plugin import load_engine
 
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--draws", type=int, default=100_000)
+    parser.add_argument("--draws", type=int, default=200_000)
     parser.add_argument("--hair", action="append", choices=HAIRS, help="may be repeated (default: all)")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE.json")
     args = parser.parse_args()
@@ -225,7 +275,7 @@ def main() -> int:
         report = {
             name: compare(mi, name, Path(folder), args.draws, args.out.parent) for name in args.hair or HAIRS
         }
-    args.out.write_text(json.dumps(report, indent=1) + "\n")
+    write_whole(args.out, f"{json.dumps({'draws': args.draws, 'hairs': report}, indent=1)}\n".encode())
     return 0
 
 

@@ -11,15 +11,21 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from fitted_hair import BATCHES, GAMMA, IMAGE, LIGHTS, OWN, PHI, SPP, STRANDS, THETA_I, THETA_R
+from scipy.stats import norm
 
 from hairlut import modelfile
+from hairlut.files import write_whole
 from hairlut.lobes import FITTED
 
 matplotlib.use("Agg")
 from matplotlib import pyplot
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "precompute" / "examples" / "wrapped_azimuth.py"
-KINDS = ("uniform", "built-in tables", "tables fitted to it", "half tables, half its own", "its own")
+FAMILY, MODEL, ITS_OWN = "family over offsets", "one fitted model", "its own"
+KINDS = ("uniform", "built-in tables", MODEL, FAMILY, "half tables, half its own", ITS_OWN)
+ALPHA = 0.01
+CLOSE = 1.1  # at most so many times the samples, or the variance, of the BSDF's own sampler
 
 PAGE = """# From any hair to its tables
 
@@ -30,18 +36,27 @@ FILE` turns those into textures, and the C library loads them as it loads the sh
     hairlut bake --model fits/my_grid_masses.npz --size 96x37 --out baked
     hairlut_load("baked/my_grid_masses", &model)
 
-These pages' numbers come from
+Most hair scatters differently where it is hit in the middle and near its rim. A grid with one more axis,
+`offset`, becomes a family of models, and a renderer draws from those of the two neighbouring offsets:
+
+    hairlut fit my_offsets.npz --measure solid-angle --out fits
+    hairlut bake --model fits/my_offsets --size 64x37 --out baked/my_offsets
+    hairlut_sample_components(lobes, 4, theta_r, phi_r, u_lobe, u_theta, u_phi)
+
+The Mitsuba plugin does this with `family: baked/my_offsets`; `precompute/hairlut/familyfiles.py` has the file
+format. These pages' numbers come from
 
     .venv/bin/python runtime/mitsuba/fitted_hair.py --out luts/report/fit.json
     .venv/bin/python runtime/mitsuba/fitted_page.py luts/report/fit.json
 
 ## A hair BSDF that nobody here wrote
 
-Mitsuba's `hair` (Chiang et al. 2016) was evaluated on {grid}, averaged over the offset at which the fibre
-is hit, fitted, and baked; then the plugin drew from the tables. Relative variance V of one draw's estimate
-of the light that the fibre scatters towards the viewer; a sampler with V needs (1 + V) / (1 + V') times the
-samples of one with V' where the light is constant, and V / V' times in general. The offset is random, as it
-is within a pixel.
+Mitsuba's `hair` (Chiang et al. 2016) was evaluated on {grid}, fitted and baked: one model to its mean over
+the offset, and a family of two lobes at each offset. Then the plugin drew from the tables. Relative
+variance V of one draw's estimate of the light that the fibre scatters towards the viewer ({draws:,} draws);
+a sampler with V needs (1 + V) / (1 + V') times the samples of one with V' where the light is constant, and
+V / V' times in general. The offset is random, as it is within a pixel; what it changes of the light itself
+no sampler of directions takes away. The viewers stand half-way between the grid's.
 
 {constant}
 
@@ -49,27 +64,66 @@ In light with a bright window and a small lamp (the light itself makes most of t
 
 {contrasted}
 
-Every mean agrees with that of the fitted tables within three standard errors of their difference, except
-those marked *. {deviations}
-
-A picture of {image}: one scattering found by BSDF sampling alone, in sky and lamps: variance of a pixel at
-one sample, relative to the squared mean of the image.
+A picture of {image}: one scattering found by BSDF sampling alone, in sky and lamps. Variance of a pixel at
+one sample, relative to the squared mean of the image, with its standard error; the time is of the whole
+picture, on one shared core, relative to the BSDF's own sampler.
 
 {render}
 
-## What the tables can and cannot do
+## Verdict
 
-{limits}
+"Tables fitted in seconds sample an arbitrary hair BSDF as well as the sampler its authors derived by hand":
 
 {verdict}
 
+{lines}
+
+Times are of one core, fit and bake; a family's models bake independently of each other (`--jobs`, or a
+farm's queue).
+
+## How many offsets, how many lobes
+
+By calculation, without tables: V left by models for each of N offsets, even in the angle around the fibre
+from its middle to its rim, where the two neighbours are drawn from. "direct + multiple" is the structure of
+a single model; "K lobes" are K products of inclination and azimuth, whose inclinations all offsets share.
+The last column is what no sampler takes away.
+
+{offsets}
+
+Two lobes on 17 offsets are what this page's family has. A second lobe is needed, as a hair's highlights of
+different widths lie at different azimuths; a third gains little.
+
+## Unbiased
+
+The light was also found by a quadrature of the BSDF (exact to {quadrature:.0e}). Of {count} comparisons, at
+a family-wise significance of {alpha:g} (Sidak: {limit:.2f} standard errors), {ours}
+
+The engine's own sampler is not unbiased, which its share of the half-and-half draws inherits. Two things
+are off in Mitsuba 3.9. pdf() takes log I0 from a series whose second term it halves: where the argument of
+the Bessel function is above 12 the density (and the value) is up to 0.5 % too small, but draws are exact.
+And all draws of the fourth lobe lie on theta_i = 0, where pdf() has no such mass ("atom" below). Taken as
+they are, {plain} of its {own_count} means are off by more than that limit, the worst by {worst}. With the
+density that the draws really have, in closed form (`hairscene/owndensity.py`), and without the atom,
+{corrected}
+
+{biases}
+
+## What one model can and cannot do
+
+| hair | this model | plain marginals |
+|---|---|---|
+{marginals}
+
+This is against the mean over the offset: two tables and a mixture weight lose no more. The rest of its V
+above comes from the offset: the tables, which have no axis for it, spread over all of its highlights.
+
 ## Gaussians or masses?
 
-`hairlut fit` fits both: (a) Gaussians with smooth mean and width, and (b) the data's own masses, split into
-a direct part (a product of inclination and azimuth) and a multiple part (uniform azimuth), which
-expectation maximisation finds. It prints the relative variance of each, where Gaussians fail and why
-(peaks, skew, tails), and which one to bake. For all four hairs it says (b): the Gaussian's tails end where
-this BSDF's do not, and a few enormous weights follow.
+`hairlut fit` fits both to a grid without offsets: (a) Gaussians with smooth mean and width, and (b) the
+data's own masses, split into a direct part (a product of inclination and azimuth) and a multiple part
+(uniform azimuth), which expectation maximisation finds. It prints the relative variance of each, where
+Gaussians fail and why (peaks, skew, tails), and which one to bake. For all four hairs it says (b): the
+Gaussian's tails end where this BSDF's do not, and a few enormous weights follow.
 
 ![brown hair, data and fits](fit_brown.png)
 
@@ -84,101 +138,179 @@ at phi = 0.
 ![cut and wrapped azimuth](fit_wrapped.png)
 """
 
-LIMITS = """| hair | these tables | plain marginals | a model for each of 16 offsets |
-|---|---|---|---|
-{rows}
 
-The first two columns are against the averaged BSDF: two tables and a mixture weight lose {lost}. The rest
-of V above comes from the offset: at one offset this BSDF's highlights are narrow in azimuth and stand
-elsewhere than at the next, and the tables, which have no axis for it, spread over all of them. A model for
-each offset (the last column, by calculation) would take most of that away; which model to draw from would
-be the caller's choice, as the mixture weight is. What then remains is in part that the light itself differs
-between offsets, which the BSDF's own sampler keeps too: nearly all of it for black hair, a third for brown.
-So the answer to "as well as the sampler that its authors derived by hand" is: yes for the rough hair, where
-offsets blur; not for the others without a model for each offset, or half of the draws from the BSDF's own
-sampler."""
+def table(head: list[str], rows: list[list[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
 
 
-def table(report: dict, light: str) -> str:
+def variances(hairs: dict, light: str) -> str:
     """A row for each hair and viewer, a column for each sampler."""
-    lines = ["| hair | theta_r | " + " | ".join(KINDS) + " |", "|---|---|" + "---|" * len(KINDS)]
-    for name, hair in report.items():
-        for row in hair["viewers"]:
-            cells = [_cell(row, kind, light) for kind in KINDS]
-            lines.append(f"| {name} | {row['theta_r_deg']:g} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
-
-
-def _cell(row: dict, kind: str, light: str) -> str:
-    return f"{row[kind][light]['relative_variance']:.3f}" + ("*" if deviates(row, kind, light) else "")
-
-
-def deviates(row: dict, kind: str, light: str) -> bool:
-    """Whether the mean is more than three standard errors from that of the fitted tables."""
-    ours, other = row["tables fitted to it"][light], row[kind][light]
-    return abs(ours["mean"] - other["mean"]) > 3 * np.hypot(ours["standard_error"], other["standard_error"])
-
-
-def deviations(report: dict) -> str:
-    found = [
-        f"{name} at {row['theta_r_deg']:g} degrees, {kind}, {light}: "
-        f"{row[kind][light]['mean'] / row['tables fitted to it'][light]['mean'] - 1:+.2%}"
-        for name, hair in report.items()
+    rows = [
+        [name, f"{row['theta_r_deg']:g}", *(f"{row[kind][light]['relative_variance']:.3f}" for kind in KINDS)]
+        for name, hair in hairs.items()
         for row in hair["viewers"]
-        for kind in KINDS
-        for light in ("constant", "contrasted")
-        if deviates(row, kind, light)
     ]
-    count = sum(len(hair["viewers"]) for hair in report.values()) * 2 * (len(KINDS) - 1)
-    return f"({count} comparisons; marked: {'; '.join(found) or 'none'}.)"
+    return table(["hair", "theta_r", *KINDS], rows)
 
 
-def renders(report: dict) -> str:
-    lines = ["| hair | " + " | ".join(KINDS) + " |", "|---|" + "---|" * len(KINDS)]
-    for name, hair in report.items():
-        cells = [
-            f"{hair['render'][k]['relative_variance']:.3f}, mean {hair['render'][k]['mean']:.4f} ± "
-            f"{hair['render'][k]['standard_error']:.4f}"
-            for k in KINDS
+def renders(hairs: dict) -> str:
+    rows = []
+    for name, hair in hairs.items():
+        image = hair["render"]
+        rows.append([name])
+        for kind in KINDS:
+            seconds = image[kind]["seconds"] / image[ITS_OWN]["seconds"]
+            rows[-1].append(
+                f"{image[kind]['relative_variance']:.1f} ± {image[kind]['variance_error']:.1f}, "
+                f"time {seconds:.2f}"
+            )
+    return table(["hair", *KINDS], rows)
+
+
+def deviation(row: dict, found: dict, light: str) -> float:
+    """Standard errors by which a mean is off the quadrature; the quadrature's own error counts."""
+    exact = row["light"][light]
+    return (found["mean"] - exact["mean"]) / float(np.hypot(found["standard_error"], exact["error"]))
+
+
+def deviations(hairs: dict, kinds, key: str = "") -> list[float]:
+    """Of all hairs, viewers and lights; key: which of a sampler's results, if not its plain ones."""
+    return [
+        deviation(row, (row[kind][key] if key else row[kind])[light], light)
+        for hair in hairs.values()
+        for row in hair["viewers"]
+        for kind in kinds
+        for light in LIGHTS
+    ]
+
+
+def unbiased(hairs: dict) -> dict:
+    """What the page says of means."""
+    tables = deviations(hairs, [kind for kind in KINDS if kind not in OWN])
+    plain, corrected = deviations(hairs, OWN), deviations(hairs, OWN, "corrected")
+    count = len(tables) + len(plain) + len(corrected)
+    limit = float(norm.isf((1 - (1 - ALPHA) ** (1 / count)) / 2))
+    errors = [
+        row["light"][k]["error"] / row["light"][k]["mean"]
+        for h in hairs.values()
+        for row in h["viewers"]
+        for k in LIGHTS
+    ]
+    return {
+        "count": count,
+        "alpha": ALPHA,
+        "limit": limit,
+        "quadrature": max(errors),
+        "ours": _agree(
+            f"all {len(tables)} means of the four samplers that draw from tables or uniformly", tables, limit
+        ),
+        "plain": sum(abs(z) > limit for z in plain),
+        "own_count": len(plain),
+        "worst": f"{max(plain, key=abs):+.1f} standard errors",
+        "corrected": _agree(f"all {len(corrected)} of these means", corrected, limit),
+        "biases": biases(hairs),
+    }
+
+
+def _agree(what: str, found: list[float], limit: float) -> str:
+    off = [z for z in found if abs(z) > limit]
+    largest = f"the largest deviation is {max(found, key=abs):+.2f}"
+    if off:
+        return f"{what} agree with it but {len(off)}; {largest}."
+    return f"{what} agree with it: {largest}, their mean square {np.mean(np.square(found)):.2f}."
+
+
+def biases(hairs: dict) -> str:
+    """Of the engine's own sampler: how far off its means are, as it is and corrected; the atom's share."""
+    rows = []
+    for name, hair in hairs.items():
+        for row in hair["viewers"]:
+            found = row[ITS_OWN]
+            cells = [name, f"{row['theta_r_deg']:g}", f"{found['atom']:.2%}"]
+            for light in LIGHTS:
+                for result in (found, found["corrected"]):
+                    off = result[light]["mean"] / row["light"][light]["mean"] - 1
+                    cells.append(f"{off:+.2%} ({deviation(row, result[light], light):+.1f})")
+            rows.append(cells)
+    head = [f"{light}, {how}" for light in LIGHTS for how in ("as it is", "corrected")]
+    return table(["hair", "theta_r", "atom", *head], rows)
+
+
+def offsets(hairs: dict) -> str:
+    rows = []
+    for name, hair in hairs.items():
+        found = hair["by_offset"]
+        rows += [
+            [name, count, f"{found['split'][count]:.4f}"]
+            + [f"{found['lobes'][k][count]:.4f}" for k in found["lobes"]]
+            + [f"{found['none']:.4f}"]
+            for count in found["split"]
         ]
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+    lobes = [f"{k} lobe{'s' if k != '1' else ''}" for k in next(iter(hairs.values()))["by_offset"]["lobes"]]
+    return table(["hair", "N", "direct + multiple", *lobes, "drawn exactly"], rows)
 
 
-def limits(report: dict) -> str:
-    predicted = {name: hair["predicted"] for name, hair in report.items()}
-    rows = "\n".join(
-        f"| {name} | {p['masses']:.4f} | {p['marginals']:.4f} | {p['per_offset']:.4f} |"
-        for name, p in predicted.items()
-    )
-    low, high = (f(p["masses"] for p in predicted.values()) for f in (min, max))
-    return LIMITS.format(rows=rows, lost=f"{low:.4f} to {high:.4f}")
+def samples(hair: dict, kind: str) -> float:
+    """Times the samples of the BSDF's own sampler in constant light, mean over the viewers."""
+    own = [row[ITS_OWN]["constant"]["relative_variance"] for row in hair["viewers"]]
+    mine = [row[kind]["constant"]["relative_variance"] for row in hair["viewers"]]
+    return float(np.mean([(1 + a) / (1 + b) for a, b in zip(mine, own, strict=True)]))
 
 
-def verdict(report: dict) -> str:
+def in_picture(hair: dict, kind: str) -> tuple[float, float]:
+    """Times the variance of the BSDF's own sampler in the picture, and the standard error of that."""
+    mine, own = hair["render"][kind], hair["render"][ITS_OWN]
+    ratio = mine["relative_variance"] / own["relative_variance"]
+    parts = [r["variance_error"] / r["relative_variance"] for r in (mine, own)]
+    return ratio, ratio * float(np.hypot(*parts))
+
+
+def verdict(hairs: dict) -> str:
     """The moonshot, held against the numbers."""
-    lines = []
-    for name, hair in report.items():
-        share = np.mean(
+    met = {name: max(samples(h, FAMILY), in_picture(h, FAMILY)[0]) <= CLOSE for name, h in hairs.items()}
+    yes, no = [n for n, m in met.items() if m], [n for n, m in met.items() if not m]
+    within = f"within {CLOSE - 1:.0%} of its samples in constant light and of its variance in the picture"
+    parts = [f"{within} for {', '.join(yes)} hair"] if yes else []
+    parts += [f"not {within} for {', '.join(no)} hair"] if no else []
+    times = [h["render"][FAMILY]["seconds"] / h["render"][ITS_OWN]["seconds"] for h in hairs.values()]
+    return (
+        f"A family is {'; '.join(parts)}. It takes {min(times):.2f} to {max(times):.2f} times the time of "
+        "that sampler for a picture. One model for all offsets is "
+        f"{min(in_picture(h, MODEL)[0] for h in hairs.values()):.2f} to "
+        f"{max(in_picture(h, MODEL)[0] for h in hairs.values()):.2f} times its variance there."
+    )
+
+
+def lines(hairs: dict) -> str:
+    """Numbers of each hair."""
+    rows = []
+    for name, hair in hairs.items():
+        (image, error), seconds = in_picture(hair, FAMILY), hair["seconds"]
+        time = hair["render"][FAMILY]["seconds"] / hair["render"][ITS_OWN]["seconds"]
+        one = in_picture(hair, MODEL)
+        rows.append(
             [
-                (1 + row["tables fitted to it"]["constant"]["relative_variance"])
-                / (1 + row["its own"]["constant"]["relative_variance"])
-                for row in hair["viewers"]
+                name,
+                f"{samples(hair, FAMILY):.3f}",
+                f"{image:.2f} ± {error:.2f}",
+                f"{image * time:.2f}",
+                f"{seconds['evaluate']:.0f} + {seconds['family_fit']:.0f} + {seconds['family_bake']:.0f} s",
+                f"{hair['bytes']['family'] / 1024:.0f} KB",
+                f"{samples(hair, MODEL):.2f}",
+                f"{one[0]:.2f} ± {one[1]:.2f}",
+                f"{seconds['fit'] + seconds['bake']:.0f} s, {hair['bytes']['model'] / 1024:.0f} KB",
             ]
         )
-        image = hair["render"]
-        ratio = image["tables fitted to it"]["relative_variance"] / image["its own"]["relative_variance"]
-        against = (
-            image["tables fitted to it"]["relative_variance"] / image["built-in tables"]["relative_variance"]
-        )
-        seconds = sum(hair["seconds"].values())
-        lines.append(
-            f"- {name}: {seconds:.0f} s from BSDF to textures (the fit {hair['seconds']['fit']:.1f} s), "
-            f"{hair['bytes'] / 1024:.0f} KB, direct weight {hair['direct_weight']:.2f}. "
-            f"{share:.2f} times the samples of its own sampler in constant light; "
-            f"in the picture {ratio:.2f} times its variance, {against:.2f} times that of the built-in tables."
-        )
-    return "\n".join(lines)
+    head = [
+        "hair",
+        "family: samples",
+        "picture",
+        "picture at equal time",
+        "evaluate + fit + bake",
+        "textures",
+    ]
+    return table([*head, "one model: samples", "picture", "fit and bake, textures"], rows)
 
 
 def picture(path: Path) -> None:
@@ -202,17 +334,24 @@ def main() -> int:
     parser.add_argument("numbers", type=Path, metavar="FILE.json")
     args = parser.parse_args()
     report = json.loads(args.numbers.read_text())
+    hairs = report["hairs"]
     page = PAGE.format(
-        grid="18 theta_r x 64 theta_i x 72 phi x 16 offsets",
-        image="64x48 pixels, 4000 strands",
-        constant=table(report, "constant"),
-        contrasted=table(report, "contrasted"),
-        deviations=deviations(report),
-        render=renders(report),
-        limits=limits(report),
-        verdict=verdict(report),
+        grid=f"{len(THETA_R)} theta_r x {len(THETA_I)} theta_i x {len(PHI)} phi x {len(GAMMA)} offsets",
+        image=f"{IMAGE[0]}x{IMAGE[1]} pixels, {STRANDS} strands, {SPP * BATCHES} samples a pixel",
+        draws=report["draws"],
+        constant=variances(hairs, "constant"),
+        contrasted=variances(hairs, "contrasted"),
+        render=renders(hairs),
+        verdict=verdict(hairs),
+        lines=lines(hairs),
+        offsets=offsets(hairs),
+        marginals="\n".join(
+            f"| {name} | {h['predicted']['masses']:.4f} | {h['predicted']['marginals']:.4f} |"
+            for name, h in hairs.items()
+        ),
+        **unbiased(hairs),
     )
-    args.numbers.with_suffix(".md").write_text(page)
+    write_whole(args.numbers.with_suffix(".md"), page.encode())
     picture(args.numbers.with_name("fit_wrapped.png"))
     return 0
 

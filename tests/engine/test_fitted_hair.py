@@ -1,60 +1,250 @@
-"""Tables fitted to the engine's own hair: unbiased, and nearer to its own sampler than a built-in model."""
+"""Tables fitted to the engine's own hair: unbiased, and a family of them nearly as good as its sampler."""
 
 import math
 
 import numpy as np
 import pytest
+from engine.chisquare import cell_masses, direction, interaction, p_value, sample_angles
 
 DRAWS = 20_000
 VIEWER = math.radians(30)
-SIGMAS = 4.0  # over the four comparisons below, 1 run in 4000 that is right would fail
+ALPHA = 0.01  # of all comparisons with the quadrature below together
+KINDS = ("uniform", "built-in tables", "one fitted model", "family over offsets")
+LIGHTS = {"constant": 0, "contrasted": 1}
+COUNT = 400_000  # draws of a chi-square test
+PLACES = [(0, 0), (30, -45), (-30, 45), (60, 10), (-85, 80), (40, 170)]  # theta_r, phi_r in degrees
 
 
 @pytest.fixture(scope="module")
-def drawn(mi, tmp_path_factory):
-    """Estimates (2, DRAWS) by sampler, and the variance that the fit predicts for tables without error."""
+def rough(mi, tmp_path_factory):
+    """The BSDF dictionaries by what proposes directions, for a rough hair on a coarse grid."""
     import fitted_hair
+    from hairscene.nearfield import evaluate, midpoints
 
     from hairlut.distribution import of_grid
     from hairlut.fit import fit
+    from hairlut.offsets import of_grids
 
     nested = {"type": "hair", **fitted_hair.HAIRS["rough"]}
     theta_r = np.radians(np.arange(-80.0, 81, 20))
-    theta_i, phi = (np.arange(36) + 0.5) / 36 * np.pi - np.pi / 2, (np.arange(36) + 0.5) / 36 * 2 * np.pi
-    gamma = (np.arange(8) + 0.5) / 8 * np.pi / 2
-    values = fitted_hair.evaluate(mi, mi.load_dict(nested), theta_r, theta_i, phi, gamma)
-    weight = np.cos(gamma) / np.cos(gamma).sum()
-    data = of_grid(theta_r, theta_i, phi, fitted_hair.far_field(values, weight), per_steradian=True)
-    found = fit(data)
-    tables = fitted_hair.bake(found, "rough", tmp_path_factory.mktemp("fitted"))
-    kinds = fitted_hair.samplers(nested, tables, found.split.direct_weight)
+    theta_i, phi = midpoints(-math.pi / 2, math.pi / 2, 36), midpoints(0, 2 * math.pi, 36)
+    gamma = np.linspace(0, math.pi / 2, 7)
+    values = evaluate(mi, mi.load_dict(nested), theta_r, theta_i, phi, gamma)
+    found = fit(of_grid(theta_r, theta_i, phi, fitted_hair.far_field(values, gamma), per_steradian=True))
+    folder = tmp_path_factory.mktemp("fitted")
+    tables = fitted_hair.bake(found, "rough", folder)
+    data = of_grids(np.sin(gamma), theta_r, theta_i, phi, values, per_steradian=True)
+    family, _ = fitted_hair.bake_family(data, "rough", folder)
+    return fitted_hair.samplers(nested, tables, found.split.direct_weight, family)
+
+
+@pytest.fixture(scope="module")
+def drawn(mi, rough):
+    """Draws by sampler."""
+    import fitted_hair
+
     return {
-        kind: fitted_hair.estimates(mi, mi.load_dict(bsdf), VIEWER, DRAWS, seed)
-        for seed, (kind, bsdf) in enumerate(kinds.items())
+        kind: fitted_hair.draw(mi, mi.load_dict(bsdf), VIEWER, DRAWS, [seed])
+        for seed, (kind, bsdf) in enumerate(rough.items())
     }
 
 
-def variance(values):
-    return values[0].var() / values[0].mean() ** 2
+@pytest.fixture(scope="module")
+def exact(mi, rough):
+    """(2,) the light by quadrature, and its error."""
+    from hairscene.nearfield import light
+
+    return light(mi, mi.load_dict(rough["its own"]), VIEWER)
 
 
-@pytest.mark.parametrize("kind", ["uniform", "built-in tables"])
-@pytest.mark.parametrize("light", [0, 1], ids=["constant", "contrasted"])
-def test_the_fitted_tables_estimate_the_same_light(drawn, kind, light):
-    ours, other = drawn["tables fitted to it"][light], drawn[kind][light]
-    error = np.hypot(ours.std(), other.std()) / np.sqrt(DRAWS)
-    assert abs(ours.mean() - other.mean()) < SIGMAS * error
+def deviation(drawn, exact, light):
+    """Standard errors by which the mean is off."""
+    values, (means, errors) = drawn.estimates()[light], exact
+    return (values.mean() - means[light]) / np.hypot(values.std() / np.sqrt(DRAWS), errors[light])
 
 
-def test_a_density_five_percent_off_would_be_seen(drawn):
-    ours, other = drawn["tables fitted to it"][0], drawn["built-in tables"][0]
-    error = np.hypot(ours.std(), other.std()) / np.sqrt(DRAWS)
-    assert abs(1.05 * ours.mean() - other.mean()) > SIGMAS * error
+def limit(comparisons):
+    from scipy.stats import norm
+
+    return norm.isf((1 - (1 - ALPHA) ** (1 / comparisons)) / 2)
 
 
-def test_the_fitted_tables_come_between_the_built_in_ones_and_the_bsdfs_own_sampler(drawn):
-    fitted = variance(drawn["tables fitted to it"])
+def variance(drawn):
+    return drawn.weight.var() / drawn.weight.mean() ** 2
+
+
+COMPARISONS = len(KINDS) * len(LIGHTS) + 2 * len(LIGHTS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("light", LIGHTS)
+def test_what_draws_from_tables_estimates_the_light_of_the_quadrature(drawn, exact, kind, light):
+    assert abs(deviation(drawn[kind], exact, LIGHTS[light])) < limit(COMPARISONS)
+
+
+@pytest.mark.parametrize("kind", ["half tables, half its own", "its own"])
+@pytest.mark.parametrize("light", LIGHTS)
+def test_the_engines_own_draws_do_with_the_density_that_they_have(mi, drawn, exact, kind, light):
+    import fitted_hair
+
+    hair = fitted_hair.HAIRS["rough"]
+    corrected = fitted_hair.corrected(mi, drawn[kind], hair, VIEWER, fitted_hair.OWN[kind])
+    assert abs(deviation(corrected, exact, LIGHTS[light])) < limit(COMPARISONS)
+
+
+def test_the_engines_own_draws_have_an_atom(drawn):
+    from hairscene.owndensity import is_atom
+
+    assert is_atom(drawn["its own"].wo).mean() > 1e-3
+    assert not is_atom(drawn["family over offsets"].wo).any()
+
+
+def test_the_density_of_the_engines_draws_integrates_to_what_is_not_the_atom(mi, drawn, rough):
+    import fitted_hair
+    from hairscene.owndensity import density, is_atom
+
+    theta, phi = np.meshgrid(
+        (np.arange(400) + 0.5) / 400 * np.pi - np.pi / 2, np.arange(200) / 200 * 2 * np.pi, indexing="ij"
+    )
+    wo = np.stack([np.cos(theta) * np.sin(phi), np.sin(theta), np.cos(theta) * np.cos(phi)], -1).reshape(
+        -1, 3
+    )
+    masses = []
+    for gamma in np.arcsin(np.linspace(-0.95, 0.95, 20)):
+        of = density(fitted_hair.HAIRS["rough"], VIEWER, np.full(len(wo), gamma), wo)
+        masses.append((of * np.cos(theta).ravel()).sum() * (np.pi / 400) * (2 * np.pi / 200))
+    atom = is_atom(drawn["its own"].wo).mean()
+    assert np.mean(masses) == pytest.approx(1 - atom, abs=5 * np.sqrt(atom / DRAWS) + 2e-4)
+
+
+def test_a_density_three_percent_off_would_be_seen(drawn, exact):
+    family = drawn["family over offsets"]
+    wrong = type(family)(1.03 * family.weight, family.density, family.gamma, family.wo, 0.0)
+    assert abs(deviation(wrong, exact, 0)) > limit(COMPARISONS)
+
+
+def test_a_family_samples_nearly_as_well_as_the_bsdfs_own_sampler(drawn):
+    family = variance(drawn["family over offsets"])
+    assert family < 0.25 * variance(drawn["one fitted model"])
+    assert 1 + family < 1.05 * (1 + variance(drawn["its own"]))
+
+
+def test_one_model_comes_between_the_built_in_ones_and_the_bsdfs_own_sampler(drawn):
+    fitted = variance(drawn["one fitted model"])
     assert variance(drawn["its own"]) < fitted
     assert fitted < 0.5 * variance(drawn["built-in tables"])
     assert fitted < 0.2 * variance(drawn["uniform"])
     assert variance(drawn["half tables, half its own"]) < 0.5 * fitted
+
+
+# ---- the family in the plugin
+
+
+@pytest.fixture(scope="module")
+def family(mi, rough):
+    return mi.load_dict(rough["family over offsets"])
+
+
+@pytest.mark.parametrize("place", PLACES, ids=str)
+def test_chi_square_accepts_the_family(mi, family, place):
+    """On both sides of the fibre, between the offsets, beyond the last theta_r, and from behind."""
+    si, context = interaction(mi, *map(math.radians, place)), mi.BSDFContext()
+    masses = cell_masses(mi, lambda wo: family.pdf(context, si, wo), 10, 20)
+    assert masses.sum() == pytest.approx(1.0, abs=2e-3)
+    angles = sample_angles(mi, family, si, COUNT, seed=23)
+    assert p_value(mi, angles, masses, COUNT) > ALPHA / len(PLACES)
+    assert p_value(mi, angles, np.roll(masses, 1, axis=1), COUNT) < ALPHA / len(PLACES)
+
+
+def test_the_density_of_a_draw_is_the_density_asked_for(mi, family):
+    context = mi.BSDFContext()
+    for place in PLACES:
+        si = interaction(mi, *map(math.radians, place))
+        for u, v, w in np.random.default_rng(3).random((200, 3)).tolist():
+            sample, weight = family.sample(context, si, u, mi.Point2f(v, w))
+            value, density = family.eval_pdf(context, si, sample.wo)
+            assert density == family.pdf(context, si, sample.wo)
+            assert sample.pdf == pytest.approx(density, rel=1e-6)
+            assert np.array(weight) == pytest.approx(np.array(value) / density, rel=1e-5)
+
+
+def test_the_other_half_of_the_fibre_is_the_mirror_image(mi, family):
+    context = mi.BSDFContext()
+    for theta, phi in [(-0.5, 2.4), (0.1, 0.3), (1.2, -2.0)]:
+        here = family.pdf(context, interaction(mi, 0.4, 0.7), direction(mi, theta, phi))
+        there = family.pdf(context, interaction(mi, 0.4, -0.7), direction(mi, theta, -phi))
+        assert here == pytest.approx(there, rel=1e-5)
+
+
+def test_an_offset_between_two_is_their_mixture(mi, family):
+    """Half-way in the angle around the fibre, at a theta_r that has a row."""
+    context, (low, high) = mi.BSDFContext(), np.linspace(0, math.pi / 2, 7)[2:4].tolist()
+    for theta, phi in [(-0.5, 2.4), (0.1, 0.3), (1.2, -2.0)]:
+        pdf = [
+            family.pdf(context, interaction(mi, 0.3, gamma), direction(mi, theta, phi + gamma))
+            for gamma in (low, (low + high) / 2, high)
+        ]
+        assert pdf[1] == pytest.approx((pdf[0] + pdf[2]) / 2, rel=1e-3)
+
+
+def spoilt(rough, folder, change):
+    """The family's text with a change, and the rest of it in place."""
+    from pathlib import Path
+
+    source = Path(rough["family over offsets"]["family"])
+    for model in source.iterdir():
+        if model.is_dir():
+            (folder / model.name).symlink_to(model)
+    (folder / "family.txt").write_text(change((source / "family.txt").read_text()))
+    return {**rough["family over offsets"], "family": str(folder)}
+
+
+def without(key):
+    return lambda text: "\n".join(line for line in text.splitlines() if not line.startswith(key))
+
+
+MISTAKES = {
+    "not a family": (lambda text: "hello", "line 1: expected .hairlut-family 1. first"),
+    "newer": (lambda text: text.replace("family 1", "family 2"), "line 1: expected version 1"),
+    "empty": (lambda text: "", "ends too early"),
+    "no theta_r": (without("theta_r"), "line 3: expected a line theta_r before"),
+    "no lobes": (without("lobe"), "line 5: expected offsets to increase, with at least one lobe"),
+    "no offsets": (without("offset"), "line 4: expected a line offset before the first lobe"),
+    "few weights": (lambda text: text.rstrip().rpartition(" ")[0], "expected a model's name and 9 weights"),
+    "negative": (
+        lambda text: text.replace("lobe_0 0.", "lobe_0 -0.", 1),
+        r"expected a model's name and 9 weights",
+    ),
+    "words": (
+        lambda text: text.replace("lobe_0 0.", "lobe_0 zero.", 1),
+        r"expected a model's name and 9 weights",
+    ),
+    "unknown key": (lambda text: text + "colour brown\n", "found .colour."),
+    "no weight": (
+        lambda text: "\n".join(
+            line if not line.startswith("lobe offset_00") else " ".join([*line.split()[:2], *["0"] * 9])
+            for line in text.splitlines()
+        ),
+        "at offset 0.* no lobe has a weight above 0 at theta_r number 1",
+    ),
+    "missing model": (lambda text: text.replace("offset_03_lobe_1", "none"), "none.*directory of tables"),
+    "offset of two": (lambda text: text.replace("offset 1\n", "offset 2\n"), "expected an offset in"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda name: name.replace(" ", "-"))
+def test_a_mistake_in_a_family_is_named(mi, rough, tmp_path, mistake):
+    change, said = MISTAKES[mistake]
+    with pytest.raises(RuntimeError, match=said):
+        mi.load_dict(spoilt(rough, tmp_path, change))
+
+
+def test_a_family_that_is_not_there_is_named(mi, rough):
+    with pytest.raises(RuntimeError, match=r"none/family\.txt cannot be read"):
+        mi.load_dict({**rough["family over offsets"], "family": "none"})
+
+
+@pytest.mark.parametrize("other", [{"model": "fitted"}, {"direct_weight": 0.3}], ids=str)
+def test_a_family_beside_a_model_is_refused(mi, rough, other):
+    with pytest.raises(RuntimeError, match="beside family"):
+        mi.load_dict({**rough["family over offsets"], **other})

@@ -21,7 +21,8 @@ ADVICE = {
 LIMIT = 0.1
 LIMIT_TEXT = (
     "No tables of this structure do much better: what is left is light whose inclination and azimuth depend "
-    "on each other. Fit a model for each part of it, or mix in another sampler."
+    "on each other. If that comes from where the fibre is hit, fit a grid with offsets (hairlut fit --help); "
+    "else fit a model for each part of it, or mix in another sampler."
 )
 
 

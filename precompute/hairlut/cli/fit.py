@@ -15,7 +15,7 @@ Report = Callable[[str, float], None]
 EXAMPLES = """examples:
   hairlut fit goniometer.csv --out fits
   hairlut fit bsdf_grid.npz --measure solid-angle && hairlut bake --model fits/bsdf_grid_masses.npz
-  hairlut fit offsets.npz && hairlut bake --model fits/offsets --out baked/offsets
+  hairlut fit offsets.npz && hairlut bake --model fits/offsets --size 64x37 --out baked/offsets
 the data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
 CSV, or arrays of these names as npz. A full grid of value is a density; anything else is samples, weighed
 by value. An npz with an array offset (increasing, in [-1, 1]: where across its width the fibre is hit) and a

@@ -102,7 +102,8 @@ static inline hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
     const float y = axis->warp == HAIRLUT_WARP_QUARTIC ? sqrtf(sqrtf(m + axis->e)) : m;
     const float c = (y - axis->f0) * axis->inverse_k;
     const int i = (int)c;
-    const hairlut_knot knot = {(-(ptrdiff_t)(u > 0.5f) & axis->half) + i * axis->pitch, c - (float)i, axis->du * hairlut_axis_stretch(axis, y)};
+    const hairlut_knot knot = {(-(ptrdiff_t)(u > 0.5f) & axis->half) + i * axis->pitch, c - (float)i,
+                               axis->du * hairlut_axis_stretch(axis, y)};
     return knot;
 }
 

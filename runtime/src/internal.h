@@ -25,7 +25,8 @@ enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
      : HAIRLUT_FITS(columns, 64)  ? 64                                                                                \
      : HAIRLUT_FITS(columns, 128) ? 128                                                                               \
                                   : 256)
-#define HAIRLUT_STRIDE(columns) (HAIRLUT_PIVOTS + HAIRLUT_WHOLE(HAIRLUT_WHOLE(columns, HAIRLUT_STEP(columns)), HAIRLUT_LINE))
+#define HAIRLUT_STRIDE(columns)                                                                                       \
+    (HAIRLUT_PIVOTS + HAIRLUT_WHOLE(HAIRLUT_WHOLE(columns, HAIRLUT_STEP(columns)), HAIRLUT_LINE))
 #define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * ((height) + 1) + HAIRLUT_LINE)
 
 /* A cell of one row, seen from the end of the row that is nearer: at the fraction f of the way across,
@@ -51,10 +52,10 @@ enum { HAIRLUT_CELL = 4 /* floats */ };
 
 /* A table ready for sampling. */
 typedef struct hairlut_axis {
-    const float *rows; /* the first texel of row 0; best if its pivots are aligned to a cache line */
+    const float *rows;  /* the first texel of row 0; best if its pivots are aligned to a cache line */
     const float *cells; /* the first cell of row 0; best if aligned to a cell's size */
-    ptrdiff_t pitch;  /* floats from one cell of a row to the next */
-    ptrdiff_t half;   /* floats from the low to the high half */
+    ptrdiff_t pitch;    /* floats from one cell of a row to the next */
+    ptrdiff_t half;     /* floats from the low to the high half */
     float row_origin; /* theta_r of row 0 */
     float row_scale;  /* rows per radian of theta_r */
     float row_last;   /* height - 1 */
@@ -74,11 +75,10 @@ typedef struct hairlut_axis {
 
 /* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. `stored`
  * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats. */
-#define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)       \
+#define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)      \
     {                                                                                                                 \
-        (stored) + HAIRLUT_PIVOTS, cells, HAIRLUT_PITCH(height_), HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_),        \
-            row_origin_, row_scale_,                                                                                  \
-            (float)((height_) - 1), warp_, e_, f0_, k_, 1.0f / (k_),                                                  \
+        (stored) + HAIRLUT_PIVOTS, cells, HAIRLUT_PITCH(height_), HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_),    \
+            row_origin_, row_scale_, (float)((height_) - 1), warp_, e_, f0_, k_, 1.0f / (k_),                         \
             (warp_) == HAIRLUT_WARP_QUARTIC ? 4.0f * (k_) : (k_), low_, high_, columns_, height_,                     \
             HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                                          \
     }

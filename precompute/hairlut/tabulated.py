@@ -42,28 +42,26 @@ class TabulatedDensity:
         self._u /= self._u[:, -1:]
         self._cubics = [PchipInterpolator(edges, u) for u in self._u]
         self._rows: dict[float, CubicHermiteSpline] = {}
+        self._last: tuple[np.ndarray, _Joined] | None = None
 
     def __call__(self, x, theta_r):
         """Log-density at x and theta_r (rad, broadcast against each other); -inf outside the domain."""
         x, theta_r = np.asarray(x, np.float64), np.asarray(theta_r, np.float64)
         shape = np.broadcast_shapes(x.shape, theta_r.shape)
-        shared = shape[-1:] if theta_r.shape[-1:] == (1,) else (1,)  # how many x in a row have one theta_r
-        of_rows = (*shape[:-1], 1) if shared == shape[-1:] else shape
-        angles, which = np.unique(np.broadcast_to(theta_r, of_rows), return_inverse=True)
-        points = np.broadcast_to(x, shape).reshape(-1, *shared)
-        order = np.argsort(which.ravel(), kind="stable")
-        ends = np.searchsorted(which.ravel()[order], np.arange(len(angles) + 1))
-        density = np.empty(points.shape)
-        for angle, first, last in zip(angles, ends[:-1], ends[1:], strict=True):
-            here = order[first:last]
-            density[here] = self._density(float(angle), points[here])
-        density[(points < self.edges[0]) | (points > self.edges[-1])] = 0.0
+        angles, which = np.unique(theta_r, return_inverse=True)
+        which = np.broadcast_to(which.reshape(theta_r.shape), shape)
+        x = np.broadcast_to(x, shape)
+        low, high = self.edges[0], self.edges[-1]
+        density = np.maximum(self._joined(angles).slope(x, which), 1e-9 / (high - low))
+        density = np.where((x < low) | (x > high), 0.0, density)
         with np.errstate(divide="ignore"):
-            return np.log(density).reshape(shape)
+            return np.log(density)
 
-    def _density(self, theta_r: float, x: np.ndarray) -> np.ndarray:
-        lowest = 1e-9 / (self.edges[-1] - self.edges[0])
-        return np.maximum(self.row(theta_r)(x, 1), lowest)
+    def _joined(self, angles: np.ndarray) -> _Joined:
+        """The rows at these theta_r, kept for as long as the same ones are asked for."""
+        if self._last is None or not np.array_equal(self._last[0], angles):
+            self._last = angles, _Joined([self.row(float(angle)) for angle in angles])
+        return self._last[1]
 
     def breakpoints(self, theta_r) -> np.ndarray:
         """(R, B) knots of the rows at theta_r (R,), filled up with the domain's end."""
@@ -107,6 +105,28 @@ class TabulatedDensity:
         kept = np.append(np.diff(x) > MERGE[0] * (x[-1] - x[0]), True)
         kept[0] = True
         return _monotone(x[kept], u[kept], density[kept])
+
+
+class _Joined:
+    """Cubics over one interval as a single one, so that points of many rows are looked up at once."""
+
+    def __init__(self, rows: list[CubicHermiteSpline]):
+        self._low, self._scale = rows[0].x[0], 0.5 / (rows[0].x[-1] - rows[0].x[0])
+        self._x = np.concatenate([row.x for row in rows])
+        ends = np.cumsum([row.x.size for row in rows])
+        self._first, self._last = ends - [row.x.size for row in rows], ends - 2  # of the pieces of each row
+        self._c = np.concatenate([np.append(row.c, row.c[:, -1:], axis=1) for row in rows], axis=1)
+        self._key = self._place(self._x, np.repeat(np.arange(len(rows)), [row.x.size for row in rows]))
+
+    def _place(self, x: np.ndarray, row: np.ndarray) -> np.ndarray:
+        return row + (x - self._low) * self._scale
+
+    def slope(self, x: np.ndarray, row: np.ndarray) -> np.ndarray:
+        """The derivative at x of the cubics numbered row, of one shape."""
+        i = np.searchsorted(self._key, self._place(x, row), side="right") - 1
+        i = np.clip(i, self._first[row], self._last[row])
+        d = x - self._x[i]
+        return (3 * self._c[0, i] * d + 2 * self._c[1, i]) * d + self._c[2, i]
 
 
 def _quantiles(cubic: PchipInterpolator, u_edges: np.ndarray, edges: np.ndarray, u: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@
 #include "message.h"
 #include "warp.h"
 
-enum { MAX_SIDE = 4096 }; /* 64 MiB a table: a wrong size is refused before it is allocated */
+enum { MAX_SIDE = 4096 }; /* 64 MiB of texels, a wrong size is refused before it is allocated */
 
 /* The floats next to pi/2 and 2 pi, both just above. */
 static const float half_pi = 1.57079637f;

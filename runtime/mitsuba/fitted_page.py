@@ -276,12 +276,13 @@ def verdict(hairs: dict) -> str:
     ones = [in_picture(h, MODEL)[0] for h in hairs.values()]
     answer = f"yes, for {_all(yes, hairs)} hair" if yes else "no"
     missed = f", not for {', '.join(no)} hair" if yes and no else ""
+    close = f"{CLOSE - 1:.0%}"
     return (
         f"At equal numbers of samples, {answer}{missed}: yes means that the family over offsets needs at "
-        f"most {CLOSE - 1:.0%} more samples than that sampler in constant light, and has at most "
-        f"{CLOSE - 1:.0%} more variance in the picture. At equal time, not quite: its picture takes {min(times):.2f} to "
-        f"{max(times):.2f} times as long, for a draw reads two tables of each of four lobes, twice. "
-        f"One model for all offsets has {min(ones):.2f} to {max(ones):.2f} times the variance of that sampler. "
+        f"most {close} more samples than that sampler in constant light, and has at most {close} more variance in "
+        f"the picture. At equal time, not quite: its picture takes {min(times):.2f} to {max(times):.2f} times "
+        "as long, for a draw reads two tables of each of four lobes, twice. One model for all offsets has "
+        f"{min(ones):.2f} to {max(ones):.2f} times the variance of that sampler. "
         '"In seconds" holds for the fit; to bake a family takes minutes of one core.'
     )
 

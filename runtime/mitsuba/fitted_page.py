@@ -279,9 +279,9 @@ def verdict(hairs: dict) -> str:
     close = f"{CLOSE - 1:.0%}"
     return (
         f"At equal numbers of samples, {answer}{missed}: yes means that the family over offsets needs at "
-        f"most {close} more samples than that sampler in constant light, and has at most {close} more variance in "
-        f"the picture. At equal time, not quite: its picture takes {min(times):.2f} to {max(times):.2f} times "
-        "as long, for a draw reads two tables of each of four lobes, twice. One model for all offsets has "
+        f"most {close} more samples than that sampler in constant light, and has at most {close} more "
+        f"variance in the picture. At equal time, not quite: its picture takes {min(times):.2f} to "
+        f"{max(times):.2f} times as long, for a draw reads two tables of each of four lobes, twice. One model for all offsets has "
         f"{min(ones):.2f} to {max(ones):.2f} times the variance of that sampler. "
         '"In seconds" holds for the fit; to bake a family takes minutes of one core.'
     )

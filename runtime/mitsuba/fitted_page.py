@@ -140,6 +140,12 @@ at phi = 0.
 ![cut and wrapped azimuth](fit_wrapped.png)
 """
 
+VERDICT = """At equal numbers of samples, {answer}: yes means that the family over offsets needs at most
+{close:.0%} more samples than that sampler in constant light, and has at most {close:.0%} more variance in the
+picture. At equal time, not quite: its picture takes {times} times as long, for a draw reads two tables of
+each of four lobes, twice. One model for all offsets has {ones} times the variance of that sampler. "In
+seconds" holds for the fit; to bake a family takes minutes of one core."""
+
 
 def table(head: list[str], rows: list[list[str]]) -> str:
     lines = [head, ["---"] * len(head), *rows]
@@ -276,15 +282,11 @@ def verdict(hairs: dict) -> str:
     ones = [in_picture(h, MODEL)[0] for h in hairs.values()]
     answer = f"yes, for {_all(yes, hairs)} hair" if yes else "no"
     missed = f", not for {', '.join(no)} hair" if yes and no else ""
-    close = f"{CLOSE - 1:.0%}"
-    return (
-        f"At equal numbers of samples, {answer}{missed}: yes means that the family over offsets needs at "
-        f"most {close} more samples than that sampler in constant light, and has at most {close} more "
-        f"variance in the picture. At equal time, not quite: its picture takes {min(times):.2f} to "
-        f"{max(times):.2f} times as long, for a draw reads two tables of each of four lobes, twice. One model for all offsets has "
-        f"{min(ones):.2f} to {max(ones):.2f} times the variance of that sampler. "
-        '"In seconds" holds for the fit; to bake a family takes minutes of one core.'
-    )
+    return VERDICT.format(answer=answer + missed, close=CLOSE - 1, times=_range(times), ones=_range(ones))
+
+
+def _range(values: list[float]) -> str:
+    return f"{min(values):.2f} to {max(values):.2f}"
 
 
 def _all(names: list[str], hairs: dict) -> str:

@@ -31,7 +31,8 @@ readings, the azimuth, and theta of the multiple lobe; the readings share the la
    would add less variance on smooth lobes (5e-6 against 2e-5), ten times below what anyone can see; the
    fold's kink at u = 1/2 is what the quartic pays. The two-sided power has no kink and no closed inverse.
 2. **Curved (quadratic) cells**: x(f) = x0 + f (d + c (1-f)), c from the widths of both neighbours. Ten
-   times less variance for one more texel on either side and four more operations.
+   times less variance for four more operations a sample; the curvatures themselves follow from the texels,
+   once, when a table is loaded.
 3. **e is measured for each table**, a power of two: the largest that keeps V, because a large e keeps the
    end cells wide in float steps.
 4. **The outermost knot lies on the domain's end**, not at the 2^-25 quantile. Stopping at the quantile

@@ -32,13 +32,13 @@ public:
         for (int number = 1; std::getline(file, line); ++number)
             if (const std::string wrong = read(line); !wrong.empty())
                 Throw("hairlut: %s, line %d: %s", path, number, wrong);
-        if (m_nodes.empty() || m_nodes.back().lobes.empty())
+        if (m_nodes.empty() || m_nodes.back().empty())
             Throw("hairlut: %s ends too early: expected lines \"offset\", each followed by lines \"lobe\"", path);
-        for (const Node &node : m_nodes)
+        for (size_t o = 0; o < m_nodes.size(); ++o)
             for (size_t k = 0; k < m_theta_r.size(); ++k)
-                if (std::none_of(node.lobes.begin(), node.lobes.end(), [k](const Lobe &l) { return l.weights[k] > 0.f; }))
+                if (std::none_of(m_nodes[o].begin(), m_nodes[o].end(), [k](const Lobe &l) { return l.weights[k] > 0.f; }))
                     Throw("hairlut: %s: at offset %f no lobe has a weight above 0 at theta_r number %d: nothing could be "
-                          "drawn there", path, std::sin(node.angle), k + 1);
+                          "drawn there", path, std::sin(m_angles[o]), k + 1);
     }
 
     hairlut_sample sample(float theta_r, float phi_r, float u_lobe, float u_theta, float u_phi) const {
@@ -62,10 +62,7 @@ private:
         std::unique_ptr<HairlutTables> tables;
         std::vector<float> weights; // for each theta_r
     };
-    struct Node {
-        float angle; // asin(offset)
-        std::vector<Lobe> lobes;
-    };
+    using Node = std::vector<Lobe>; // the lobes of one offset
     /// The lobes of two offsets; side is -1 where their azimuth is to be mirrored.
     struct Mixture {
         hairlut_component parts[2 * MAX_LOBES];
@@ -78,13 +75,12 @@ private:
         size_t first;
         float t;
     };
-    template <typename Get> static Place place(size_t count, float x, Get get) {
-        size_t k = 0;
-        while (k + 2 < count && x >= get(k + 1))
-            ++k;
-        if (count < 2)
+    static Place place(const std::vector<float> &values, float x) {
+        if (values.size() < 2)
             return { 0, 0.f };
-        return { k, std::clamp((x - get(k)) / (get(k + 1) - get(k)), 0.f, 1.f) };
+        const auto next = std::upper_bound(values.begin() + 1, values.end() - 1, x);
+        const float low = *(next - 1);
+        return { static_cast<size_t>(next - values.begin()) - 1, std::clamp((x - low) / (*next - low), 0.f, 1.f) };
     }
 
     Mixture at(float theta_r, float phi_r) const {
@@ -94,8 +90,7 @@ private:
             angle = -angle;
             m.side = -1.f;
         }
-        const Place row = place(m_theta_r.size(), theta_r, [this](size_t k) { return m_theta_r[k]; });
-        const Place node = place(m_nodes.size(), angle, [this](size_t k) { return m_nodes[k].angle; });
+        const Place row = place(m_theta_r, theta_r), node = place(m_angles, angle);
         add(m, m_nodes[node.first], 1.f - node.t, row);
         if (node.t > 0.f)
             add(m, m_nodes[node.first + 1], node.t, row);
@@ -103,7 +98,7 @@ private:
     }
 
     static void add(Mixture &m, const Node &node, float share, const Place &row) {
-        for (const Lobe &lobe : node.lobes) {
+        for (const Lobe &lobe : node) {
             const float first = lobe.weights[row.first];
             const float next = row.t > 0.f ? lobe.weights[row.first + 1] : first;
             m.parts[m.count++] = { lobe.tables->get(), HAIRLUT_LOBE_DIRECT, share * (first + row.t * (next - first)) };
@@ -154,9 +149,10 @@ private:
         if (!(words >> h) || !(std::fabs(h) <= 1.f))
             return "expected an offset in [-1, 1]";
         const float angle = std::asin(h);
-        if (!m_nodes.empty() && (m_nodes.back().lobes.empty() || !(angle > m_nodes.back().angle)))
+        if (!m_nodes.empty() && (m_nodes.back().empty() || !(angle > m_angles.back())))
             return "expected offsets to increase, with at least one lobe each";
-        m_nodes.push_back({ angle, {} });
+        m_nodes.emplace_back();
+        m_angles.push_back(angle);
         return "";
     }
 
@@ -166,14 +162,14 @@ private:
         std::vector<float> weights = numbers(words);
         if (m_nodes.empty())
             return "expected a line offset before the first lobe";
-        if (m_nodes.back().lobes.size() == MAX_LOBES)
+        if (m_nodes.back().size() == MAX_LOBES)
             return "expected at most " + std::to_string(MAX_LOBES) + " lobes for each offset";
         const bool valid = std::all_of(weights.begin(), weights.end(), [](float w) { return w >= 0.f && w <= 1.f; });
         if (weights.size() != m_theta_r.size() || !valid)
             return "expected a model's name and " + std::to_string(m_theta_r.size()) +
                    " weights in [0, 1], one for each theta_r";
         auto tables = std::make_unique<HairlutTables>(m_directory + "/" + name);
-        m_nodes.back().lobes.push_back({ std::move(tables), std::move(weights) });
+        m_nodes.back().push_back({ std::move(tables), std::move(weights) });
         return "";
     }
 
@@ -182,6 +178,7 @@ private:
     bool m_mirrored = false;
     std::vector<float> m_theta_r;
     std::vector<Node> m_nodes;
+    std::vector<float> m_angles; // asin(offset) of each node
 };
 
 NAMESPACE_END(mitsuba)

@@ -5,7 +5,6 @@ import os
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
 
 from ..errors import HairlutError
 
@@ -15,8 +14,8 @@ LEAST_TIME = 0.04  # s, of each repetition
 
 @dataclass(frozen=True)
 class Times:
-    """ns: nanoseconds a sample, by the benchmark's name, the median of the repetitions; spread: (largest -
-    least) / ns."""
+    """ns: nanoseconds a sample, by the benchmark's name, the least of the repetitions, as other programs only
+    add to it; spread: (largest - least) / least."""
 
     ns: dict[str, float]
     spread: dict[str, float]
@@ -48,7 +47,7 @@ def _times(entries: list[dict]) -> Times:
     for entry in entries:
         if entry.get("run_type", "iteration") == "iteration":
             repeats.setdefault(entry["run_name"], []).append(entry["ns"])
-    ns = {name: median(values) for name, values in repeats.items()}
+    ns = {name: min(values) for name, values in repeats.items()}
     return Times(ns, {name: (max(v) - min(v)) / ns[name] for name, v in repeats.items()}, _processor())
 
 

@@ -1,7 +1,7 @@
 """Ratios of speed from one run of hairlut_bench: summary.py RESULTS.json.
 
-A ratio is taken of the least times of all repeats, since another program's interference only adds to them; then
-of the medians, with the spread of the ratios of single repeats, which the benchmark interleaves.
+A ratio is taken of the least times of all repeats, since another program's interference only adds to them;
+then of the medians, with the spread of the ratios of single repeats, which the benchmark interleaves.
 """
 
 import argparse

@@ -31,7 +31,6 @@ MIN_STEPS = 2.0
 EXPONENTS = range(-30, 1)  # of e
 FIRST_EXPONENT = -16
 PROBE_HEIGHT = 33  # rows on which a width alone is judged
-FEW_ROWS = 17  # rows on which e alone is judged
 WIDEST = 2
 SEARCHED_BETWEEN = 1  # midway between rows is the worst place
 SLACK = 1.1  # an e is as good as a smaller one if its variance is within this factor
@@ -88,19 +87,18 @@ def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cel
 
 
 def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Choice:
-    """The table of a given size, with the largest e whose V, on few rows, is within SLACK of the best."""
+    """The table of a given size, with the largest e whose V is within SLACK of the best."""
     check_size(width, height)
-    trials, few = _Trials(lobe, cell), min(height, FEW_ROWS)
-    exponent = trials.best_exponent(width, few, 0, FIRST_EXPONENT)
-    bound = SLACK * trials.variance(width, few, exponent, 0)
-    exponent = trials.largest_exponent(width, few, 0, exponent, bound)
-    wide_enough = (e for e in EXPONENTS if e >= exponent and trials.valid(width, height, e))
-    if (chosen := next(wide_enough, None)) is None:
+    trials = _Trials(lobe, cell)
+    exponent = trials.best_exponent(width, height, SEARCHED_BETWEEN, FIRST_EXPONENT)
+    bound = SLACK * trials.variance(width, height, exponent, SEARCHED_BETWEEN)
+    if not np.isfinite(bound):
         raise HairlutError(
             f"{lobe.model}/{lobe.name}: at {width}x{height} some cell is narrower than {MIN_STEPS:g} steps "
             "of a float with every e: use fewer columns"
         )
-    return trials.choice(width, height, chosen, "size as asked, largest e within 10% of the least V")
+    exponent = trials.largest_exponent(width, height, SEARCHED_BETWEEN, exponent, bound)
+    return trials.choice(width, height, exponent, "size as asked, largest e within 10% of the least V")
 
 
 class _Trials:
@@ -124,19 +122,14 @@ class _Trials:
 
     def _variance(self, width: int, height: int, exponent: int, between: int) -> float:
         """V at the worst inclination; infinite where a cell is flat or too narrow for float32."""
-        table = self.valid(width, height, exponent)
-        if table is None:
-            return np.inf
-        return measure(table, self.lobe, between, False, self.exact(height, between)).relative_variance
-
-    def valid(self, width: int, height: int, exponent: int) -> Table | None:
-        """The table, or None if some cell of it is flat or too narrow for float32."""
         self.rows(height)  # what is wrong with the lobe itself is raised here
         try:
             table = self.table(width, height, exponent)
         except HairlutError:  # flat cells
-            return None
-        return table if narrowest_cell(table.texels) >= MIN_STEPS else None
+            return np.inf
+        if narrowest_cell(table.texels) < MIN_STEPS:
+            return np.inf
+        return measure(table, self.lobe, between, False, self.exact(height, between)).relative_variance
 
     def best_exponent(self, width: int, height: int, between: int, start: int) -> int:
         """The exponent of e with the least variance, walking downhill from start."""

@@ -9,7 +9,8 @@ import re
 import subprocess
 
 import pytest
-from runtime.c_library import BUILD, ROOT, RUNTIME, run, tool
+from runtime.by_hand import compiled
+from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
@@ -31,49 +32,7 @@ def program():
         pytest.skip("instructions are pinned for x86-64")
     if not tool("valgrind"):
         pytest.skip("instructions are not counted: apt-get install valgrind")
-    folder = BUILD / "tests" / "instructions"
-    folder.mkdir(parents=True, exist_ok=True)
-    kernels = {"batch_avx2": ["-mavx2", "-mbmi2", "-mpopcnt"]}
-    kernels["batch_avx512"] = [f"-mavx512{part}" for part in ("f", "bw", "dq", "vl")] + kernels["batch_avx2"]
-    names = [
-        "sample",
-        "mixture",
-        "model",
-        "builtin",
-        "builtin_tables",
-        "batch",
-        "batch_mixture",
-        "batch_portable",
-    ]
-    flags = [
-        "-std=c99",
-        "-O2",
-        "-fno-math-errno",
-        "-ffp-contract=off",
-        f"-I{RUNTIME / 'include'}",
-    ]
-    objects = []
-    for name in (*names, *kernels):
-        objects.append(folder / f"{name}.o")
-        run(
-            "cc",
-            *flags,
-            *kernels.get(name, []),
-            "-c",
-            RUNTIME / "src" / f"{name}.c",
-            "-o",
-            objects[-1],
-        )
-    run(
-        "cc",
-        *flags,
-        ROOT / "tests" / "bench" / "instructions.c",
-        *objects,
-        "-o",
-        folder / "instructions",
-        "-lm",
-    )
-    return folder / "instructions"
+    return compiled("instructions", ROOT / "tests" / "bench" / "instructions.c", "cc", "-O2")
 
 
 def instructions(program, what: str) -> float:

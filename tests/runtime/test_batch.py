@@ -1,64 +1,19 @@
 """The batch kernels give the bits of the one-direction functions, on every instruction set run here."""
 
-import platform
 import re
 import subprocess
 from pathlib import Path
 
 import pytest
-from runtime.c_library import BUILD, HERE, RUNTIME, build, run, tool
+from runtime.by_hand import COMMON, HERE_RUN
+from runtime.c_library import BUILD, HERE, build, run, tool
 
-SOURCE = RUNTIME / "src"
-CORE = (
-    "sample",
-    "mixture",
-    "frame",
-    "model",
-    "builtin",
-    "builtin_tables",
-    "batch",
-    "batch_mixture",
-    "batch_portable",
-)
-KERNELS = {
-    "avx2": ["-mavx2", "-mbmi2", "-mpopcnt"],
-    "avx512": [
-        "-mavx512f",
-        "-mavx512bw",
-        "-mavx512dq",
-        "-mavx512vl",
-        "-mbmi2",
-        "-mpopcnt",
-    ],
-    "neon": [],
-}
-HERE_RUN = ("neon",) if platform.machine() in ("aarch64", "arm64") else ("avx2", "avx512")
-INCLUDE = [f"-I{RUNTIME / 'include'}", f"-I{SOURCE}"]
-# the library's flags: no fused multiply-add, no errno
-COMMON = [
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-    "-fno-math-errno",
-    "-ffp-contract=off",
-    *INCLUDE,
-]
+from runtime import by_hand
 
 
 def compiled(name: str, compiler: str, *flags: str, kernels=HERE_RUN) -> Path:
     """batch_check with the library's sources, compiled anew with these flags."""
-    folder = BUILD / "tests" / f"batch-{name}"
-    folder.mkdir(parents=True, exist_ok=True)
-    units = [(SOURCE / f"{unit}.c", []) for unit in CORE]
-    units += [(SOURCE / f"batch_{kernel}.c", KERNELS[kernel]) for kernel in kernels]
-    units.append((HERE / "batch_check.c", []))
-    objects = []
-    for source, extra in units:
-        objects.append(folder / f"{source.stem}.o")
-        run(compiler, *COMMON, *flags, *extra, "-c", source, "-o", objects[-1])
-    run(compiler, *flags, *objects, "-o", folder / "batch_check", "-lm")
-    return folder / "batch_check"
+    return by_hand.compiled(f"batch-{name}", HERE / "batch_check.c", compiler, *flags, kernels=kernels)
 
 
 def checked(*command) -> dict[str, str]:

@@ -95,12 +95,11 @@ The last column is what no sampler takes away.
 Two lobes on 17 offsets are what this page's family has. A second lobe is needed, as a hair's highlights of
 different widths lie at different azimuths; a third gains little.
 
-That is without tables. With two lobes the azimuths mostly have two peaks, and a table of a two-peaked lobe
-has weights f/q up to 35 between them (`hairlut bake` prints the largest of each), against 4 for a single
-peak. They are rare enough for the figures above, but where one meets a lamp it is a firefly: another choice
-of the warps' e for the same fits gave brown hair's picture one, and a variance of 1.28 ± 0.27 times that of
-its own sampler instead of 1.02 ± 0.02. More lobes, each with one peak, would be the cure, at two more
-tables each.
+That is without tables. With two lobes the azimuths mostly have two peaks, and a table of a two-peaked
+lobe has large weights f/q between them: for brown hair up to 35, as `hairlut bake` prints, against 4 for
+a single peak. They are rare enough for the figures above, but where one meets a lamp it is a firefly.
+With another choice of the warps' e for the same fits, brown hair's picture had one, and the verdict on it
+would have been no. More lobes, each with one peak, would be the cure, at two more tables each.
 
 ## Unbiased
 

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hairlut import batch_bake, exr, manifest, modelfile
@@ -142,3 +143,12 @@ def test_a_manifest_leads_to_a_model_of_numbers_but_never_runs_code(baked, luts)
     assert found is not None
     assert found.name == "measured.toml"
     assert manifest.source(folder.parent) is None
+
+
+def test_the_measured_example_is_what_the_bake_writes_today(luts, tmp_path):
+    assert hairlut("bake", "--model", manifest.source(luts / "measured"), "--out", tmp_path).returncode == 0
+    for file in sorted((luts / "measured").glob("*.exr")):
+        (shipped, claimed), (fresh, errors) = exr.read(file), exr.read(tmp_path / "measured" / file.name)
+        assert (shipped.warp, shipped.cell) == (fresh.warp, fresh.cell)
+        np.testing.assert_array_max_ulp(shipped.texels, fresh.texels)
+        assert claimed == pytest.approx(errors, rel=1e-3)

@@ -46,6 +46,15 @@ static inline float hairlut_wrap_once(float phi, float low)
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 
+/* The same for phi from [low, low + 4 pi): at most one turn is taken away, and without a branch, as half of all samples
+ * need it. */
+static inline float hairlut_wrap_down(float phi, float low)
+{
+    const float high = low + hairlut_two_pi, n = 0.5f + copysignf(0.5f, phi - high);
+    const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
+    return r < high ? r : low;
+}
+
 /* cos(theta) for |theta| <= pi/2 as the sine of the angle to the pole: 2.5 ulp up to the pole itself, where theta's
  * rounding would turn it negative and the smallest distance of a float from pi/2 stands in. */
 static inline float hairlut_cos(float theta)
@@ -55,6 +64,12 @@ static inline float hairlut_cos(float theta)
     const float w = z * z;
     const float low = hairlut_sine[0] + hairlut_sine[1] * w, high = hairlut_sine[2] + hairlut_sine[3] * w;
     return z + z * w * (low + w * w * high);
+}
+
+/* A density per rad^2 in (theta, phi) as one per steradian. */
+static inline float hairlut_per_steradian(float pdf_angle, float theta)
+{
+    return pdf_angle / hairlut_cos(theta);
 }
 
 #endif

@@ -20,6 +20,15 @@
 #define HAIRLUT_COUNT hairlut_count /* a kernel with wider vectors defines its own, with n up to HAIRLUT_PIVOTS */
 #endif
 
+/* gcc -O2 would call the longer functions and pass what they return through memory: a density takes 1.6 times as long. */
+#if defined(__GNUC__)
+#define HAIRLUT_INLINE static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define HAIRLUT_INLINE static __forceinline
+#else
+#define HAIRLUT_INLINE static inline
+#endif
+
 /* Where theta_r lies: the row below it, and the weight of the row above, in [0,1). */
 typedef struct hairlut_row {
     int j;
@@ -30,9 +39,10 @@ typedef struct hairlut_cell {
     float x0, d, c;
 } hairlut_cell;
 
-/* A place on the u axis: the offset of its cell in row 0, the fraction in it, and |du/dcolumn| there. */
+/* A place on the u axis: its cell, counted from the low or the high end, the fraction in it, and |du/dcolumn| there. */
 typedef struct hairlut_knot {
-    ptrdiff_t cell;
+    int i;
+    int high;
     float f;
     float du;
 } hairlut_knot;
@@ -50,7 +60,7 @@ typedef struct hairlut_draw {
     float pdf;
 } hairlut_draw;
 
-/* The larger and the smaller of two numbers; NaN in x gives y. Each is one instruction. */
+/* The larger and the smaller of two numbers; NaN in x gives y. */
 static inline float hairlut_max(float x, float y)
 {
     return x > y ? x : y;
@@ -67,20 +77,33 @@ static inline float hairlut_clamp(float x, float low, float high)
     return hairlut_min(hairlut_max(x, low), high);
 }
 
+/* x moved into the domain; NaN to its low end. */
+static inline float hairlut_axis_inside(const hairlut_axis *axis, float x)
+{
+    return hairlut_clamp(x, axis->low, axis->high);
+}
+
+/* theta_r counted in rows, from 0 to the last. */
+static inline float hairlut_axis_position(const hairlut_axis *axis, float theta_r)
+{
+    return hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, 0.0f, axis->row_last);
+}
+
 static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta_r)
 {
-    const float r = hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, 0.0f, axis->row_last);
+    const float r = hairlut_axis_position(axis, theta_r);
     const int j = (int)r;
     const hairlut_row row = {j, r - (float)j};
     return row;
 }
 
-/* Blended as (1-t) a + t b, which keeps a width above zero at every t, as a + t (b-a) does not where b is far below a. */
-static inline hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, hairlut_row row, ptrdiff_t offset)
+/* Cell i of rows j and j+1, from an end; t in all lanes. Blended as (1-t) a + t b, which keeps a width above zero at every
+ * t, as a + t (b-a) does not where b is far below a. */
+HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad t, int i, int high)
 {
-    const float *a = axis->cells + (offset + HAIRLUT_CELL * (ptrdiff_t)row.j);
-    const hairlut_quad below = hairlut_quad_mul(hairlut_quad_all(1.0f - row.t), hairlut_quad_load(a));
-    const hairlut_quad above = hairlut_quad_mul(hairlut_quad_all(row.t), hairlut_quad_load(a + HAIRLUT_CELL));
+    const float *a = axis->ends[high] + (i * axis->pitch + j * HAIRLUT_CELL);
+    const hairlut_quad below = hairlut_quad_mul(hairlut_quad_sub(hairlut_quad_all(1.0f), t), hairlut_quad_load(a));
+    const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(a + HAIRLUT_CELL));
     float part[3];
     hairlut_quad_first3(hairlut_quad_add(below, above), part);
     const hairlut_cell cell = {part[0], part[1], part[2]};
@@ -96,14 +119,13 @@ static inline float hairlut_axis_stretch(const hairlut_axis *axis, float y)
 /* u to column. The fold at u = 1/2 keeps the relative precision of both tails, and chooses the half without a branch: u is
  * as good as random, and so would be the branch. The column is not below 0, because f0 is this curve's value at m = 0 to the
  * last bit. */
-static inline hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
+HAIRLUT_INLINE hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
 {
     const float m = hairlut_max(hairlut_min(u, 1.0f - u), 0.0f);
     const float y = axis->warp == HAIRLUT_WARP_QUARTIC ? sqrtf(sqrtf(m + axis->e)) : m;
     const float c = (y - axis->f0) * axis->inverse_k;
     const int i = (int)c;
-    const hairlut_knot knot = {(-(ptrdiff_t)(u > 0.5f) & axis->half) + i * axis->pitch, c - (float)i,
-                               axis->du * hairlut_axis_stretch(axis, y)};
+    const hairlut_knot knot = {i, u > 0.5f, c - (float)i, axis->du * hairlut_axis_stretch(axis, y)};
     return knot;
 }
 
@@ -135,7 +157,7 @@ static inline int hairlut_halve(const float *a, int stride, float t, float x, in
 }
 
 /* The cell whose blended texels enclose x, counted from the low end: the pivots find its block. */
-static inline int hairlut_axis_find(const hairlut_axis *axis, hairlut_row row, float x)
+HAIRLUT_INLINE int hairlut_axis_find(const hairlut_axis *axis, hairlut_row row, float x)
 {
     const int stride = axis->stride, step = axis->step, last = axis->columns - 2;
     const int few = step < HAIRLUT_PIVOTS ? step : HAIRLUT_PIVOTS;
@@ -167,7 +189,7 @@ static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_
 {
     *high = found >= axis->columns / 2;
     *i = abs((-*high & (axis->columns - 2)) - found);
-    return hairlut_axis_cell(axis, row, (-(ptrdiff_t)*high & axis->half) + *i * axis->pitch);
+    return hairlut_axis_cell(axis, row.j, hairlut_quad_all(row.t), *i, *high);
 }
 
 /* The row and the cell of an angle. */
@@ -177,10 +199,10 @@ typedef struct hairlut_found {
 } hairlut_found;
 
 /* x outside the domain is moved to its end, NaN to the low one: the search is for what a row holds, not for infinity. */
-static inline hairlut_found hairlut_axis_look_up(const hairlut_axis *axis, float theta_r, float x)
+HAIRLUT_INLINE hairlut_found hairlut_axis_look_up(const hairlut_axis *axis, float theta_r, float x)
 {
     const hairlut_row row = hairlut_axis_row(axis, theta_r);
-    const hairlut_found found = {row, hairlut_axis_find(axis, row, hairlut_clamp(x, axis->low, axis->high))};
+    const hairlut_found found = {row, hairlut_axis_find(axis, row, hairlut_axis_inside(axis, x))};
     return found;
 }
 
@@ -192,21 +214,23 @@ static inline hairlut_place hairlut_axis_locate(const hairlut_axis *axis, hairlu
     return place;
 }
 
-static inline hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float theta_r, float u)
+/* x may be beyond an end of the domain by the rounding of a blend, two steps of a float: hairlut_axis_inside moves it back,
+ * where what uses x does not have to wait for that. */
+HAIRLUT_INLINE hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float theta_r, float u)
 {
-    const hairlut_row row = hairlut_axis_row(axis, theta_r);
+    int j;
+    const hairlut_quad t = hairlut_quad_split(hairlut_axis_position(axis, theta_r), &j);
     const hairlut_knot knot = hairlut_axis_knot(axis, u);
-    const hairlut_cell cell = hairlut_axis_cell(axis, row, knot.cell);
+    const hairlut_cell cell = hairlut_axis_cell(axis, j, t, knot.i, knot.high);
     const float rest = 1.0f - knot.f;
-    const float x = cell.x0 + knot.f * (cell.d + cell.c * rest);
-    const hairlut_draw draw = {hairlut_clamp(x, axis->low, axis->high),
+    const hairlut_draw draw = {cell.x0 + knot.f * (cell.d + cell.c * rest),
                                knot.du / fabsf(cell.d + cell.c * (rest - knot.f))};
     return draw;
 }
 
 /* The density at x, which look_up found. The middle cell of an even number of columns is seen from the low end. Beyond its
  * middle the high end is nearer: hence the smaller of the distances from both ends, here and in hairlut_axis_invert. */
-static inline float hairlut_axis_density(const hairlut_axis *axis, hairlut_found found, float x)
+HAIRLUT_INLINE float hairlut_axis_density(const hairlut_axis *axis, hairlut_found found, float x)
 {
     const hairlut_place place = hairlut_axis_locate(axis, found, x);
     const float k = axis->k, part = k * place.f;

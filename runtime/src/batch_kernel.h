@@ -67,8 +67,8 @@ static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
 /* The offset of cell i, counted from an end, of row j. */
 static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
 {
-    const whole cell = imul(i, iall((int)axis->pitch));
-    const whole half = ichoose(high, iall((int)axis->half), iall(0));
+    const whole cell = imul(i, iall(axis->pitch));
+    const whole half = ichoose(high, iall((int)(axis->ends[1] - axis->ends[0])), iall(0));
     return iadd(iadd(cell, half), imul(j, iall(HAIRLUT_CELL)));
 }
 
@@ -107,14 +107,14 @@ static inline void place(const hairlut_axis *axis, size_t n, const float *theta_
 static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
 {
     real a[HAIRLUT_CELL], b[HAIRLUT_CELL];
-    gather4(axis->cells, at, a);
-    gather4(axis->cells + HAIRLUT_CELL, at, b);
+    gather4(axis->ends[0], at, a);
+    gather4(axis->ends[0] + HAIRLUT_CELL, at, b);
     const real s = sub(all(1.0f), t);
     const cells cell = {add(mul(s, a[0]), mul(t, b[0])), add(mul(s, a[1]), mul(t, b[1])), add(mul(s, a[2]), mul(t, b[2]))};
     return cell;
 }
 
-/* hairlut_axis_sample at the places of samples s .. s+LANES-1 */
+/* hairlut_axis_sample, not moved into the domain, at the places of samples s .. s+LANES-1 */
 static inline real draw(const hairlut_axis *axis, const places *p, size_t s, real *pdf)
 {
     const real f = load(p->f + s), rest = sub(all(1.0f), f);
@@ -122,7 +122,7 @@ static inline real draw(const hairlut_axis *axis, const places *p, size_t s, rea
     const real x = add(cell.x0, mul(f, add(cell.d, mul(cell.c, rest))));
     const real slope = magnitude(add(cell.d, mul(cell.c, sub(rest, f))));
     *pdf = over(load(p->du + s), slope);
-    return clamp(x, all(axis->low), all(axis->high));
+    return x;
 }
 
 /* hairlut_axis_find up to the pivots: the first cell of the block, and the offset of its first texel */
@@ -276,6 +276,15 @@ static inline real wrap_once(real phi, float low)
     return less_turns(phi, choose(greater(all(low), phi), all(-1.0f), above), low);
 }
 
+/* hairlut_wrap_down */
+static inline real wrap_down(real phi, float low)
+{
+    const real high = all(low + hairlut_two_pi);
+    const real turned = sub(sub(phi, all(hairlut_two_pi_high)), all(hairlut_two_pi_low));
+    const real r = choose(at_least(phi, high), turned, phi);
+    return choose(greater(high, r), r, all(low));
+}
+
 /* hairlut_cos */
 static inline real cosine(real theta)
 {
@@ -293,9 +302,9 @@ static inline mask known(real theta_r, real phi_r, real a, real b)
     return both(both(numbers(theta_r, a), numbers(b, b)), at_least(all(FLT_MAX), magnitude(phi_r)));
 }
 
-static inline void store_samples(hairlut_samples out, size_t s, real theta_i, real phi_i, real pdf)
+static inline void store_samples(const hairlut_axis *axis, hairlut_samples out, size_t s, real theta_i, real phi_i, real pdf)
 {
-    store(out.theta_i + s, theta_i);
+    store(out.theta_i + s, clamp(theta_i, all(axis->low), all(axis->high)));
     store(out.phi_i + s, phi_i);
     if (out.pdf_angle)
         store(out.pdf_angle + s, pdf);
@@ -316,7 +325,8 @@ static inline void sample_direct_block(const hairlut_model *model, size_t n, con
         const real relative = draw(&model->direct_phi, &phi, s, &pdf_phi);
         const real r = wrap(phi_r, -hairlut_pi);
         const real phi_i = model->azimuth == HAIRLUT_AZIMUTH_SUM ? sub(relative, r) : add(relative, r);
-        store_samples(out, s, theta_i, wrap_once(phi_i, -hairlut_pi), choose(valid, mul(pdf_theta, pdf_phi), all(0.0f)));
+        store_samples(&model->direct_theta, out, s, theta_i, wrap_down(phi_i, -hairlut_pi),
+                      choose(valid, mul(pdf_theta, pdf_phi), all(0.0f)));
     }
 }
 
@@ -329,10 +339,12 @@ static inline void sample_multiple_block(const hairlut_model *model, size_t n, c
         const real u_phi = load(in[3] + s);
         const mask valid = known(load(in[0] + s), load(in[1] + s), load(in[2] + s), u_phi);
         const real turn = mul(all(hairlut_two_pi), clamp(u_phi, all(0.0f), all(1.0f)));
-        const real phi_i = wrap_once(sub(turn, all(hairlut_pi)), -hairlut_pi);
+        const real phi = sub(turn, all(hairlut_pi));
+        const real phi_i = choose(greater(all(hairlut_pi), phi), phi, all(-hairlut_pi));
         real pdf;
         const real theta_i = draw(&model->multiple_theta, &theta, s, &pdf);
-        store_samples(out, s, theta_i, phi_i, choose(valid, mul(pdf, all(hairlut_inverse_two_pi)), all(0.0f)));
+        store_samples(&model->multiple_theta, out, s, theta_i, phi_i,
+                      choose(valid, mul(pdf, all(hairlut_inverse_two_pi)), all(0.0f)));
     }
 }
 

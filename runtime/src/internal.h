@@ -53,9 +53,8 @@ enum { HAIRLUT_CELL = 4 /* floats */ };
 /* A table ready for sampling. */
 typedef struct hairlut_axis {
     const float *rows;  /* the first texel of row 0; best if its pivots are aligned to a cache line */
-    const float *cells; /* the first cell of row 0; best if aligned to a cell's size */
-    ptrdiff_t pitch;    /* floats from one cell of a row to the next */
-    ptrdiff_t half;     /* floats from the low to the high half */
+    const float *ends[2]; /* the first cells of row 0, from the low and from the high end on; best if aligned to a cell */
+    int pitch;            /* floats from one cell of a row to the next */
     float row_origin; /* theta_r of row 0 */
     float row_scale;  /* rows per radian of theta_r */
     float row_last;   /* height - 1 */
@@ -77,8 +76,8 @@ typedef struct hairlut_axis {
  * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats. */
 #define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)      \
     {                                                                                                                 \
-        (stored) + HAIRLUT_PIVOTS, cells, HAIRLUT_PITCH(height_), HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_),    \
-            row_origin_, row_scale_, (float)((height_) - 1), warp_, e_, f0_, k_, 1.0f / (k_),                         \
+        (stored) + HAIRLUT_PIVOTS, {cells, (cells) + HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_)},                \
+            HAIRLUT_PITCH(height_), row_origin_, row_scale_, (float)((height_) - 1), warp_, e_, f0_, k_, 1.0f / (k_),                         \
             (warp_) == HAIRLUT_WARP_QUARTIC ? 4.0f * (k_) : (k_), low_, high_, columns_, height_,                     \
             HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                                          \
     }

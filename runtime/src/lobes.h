@@ -8,7 +8,7 @@
 /* NaN anywhere, or an infinite azimuth: the density is 0. */
 static inline int hairlut_known(float theta_r, float phi_r, float a, float b)
 {
-    return theta_r == theta_r && hairlut_is_finite(phi_r) && a == a && b == b;
+    return !isunordered(theta_r, a) && !isunordered(b, phi_r - phi_r); /* infinity less itself is NaN */
 }
 
 /* The azimuth that the table direct_phi holds, in [0, 2 pi). */
@@ -23,7 +23,7 @@ static inline float hairlut_relative_azimuth(const hairlut_model *model, float p
 static inline float hairlut_incident_azimuth(const hairlut_model *model, float phi_r, float phi)
 {
     const float r = hairlut_wrap(phi_r, -hairlut_pi);
-    return hairlut_wrap_once(model->azimuth == HAIRLUT_AZIMUTH_SUM ? phi - r : phi + r, -hairlut_pi);
+    return hairlut_wrap_down(model->azimuth == HAIRLUT_AZIMUTH_SUM ? phi - r : phi + r, -hairlut_pi);
 }
 
 /* The density of a mixture, from the densities of both lobes. */
@@ -34,7 +34,7 @@ static inline float hairlut_mix(float direct_weight, float direct, float multipl
 
 static inline hairlut_sample hairlut_finish(float theta_i, float phi_i, float pdf)
 {
-    const hairlut_sample s = {theta_i, phi_i, pdf, hairlut_pdf_to_solid_angle(pdf, theta_i)};
+    const hairlut_sample s = {theta_i, phi_i, pdf, hairlut_per_steradian(pdf, theta_i)};
     return s;
 }
 

@@ -136,11 +136,11 @@ static void store_cell(float *stored, float x0, float d, float c)
 static void store_cells(const hairlut_axis *axis, float *cells, int j, const float *row, float limit)
 {
     const int width = axis->columns;
-    float *stored = cells + HAIRLUT_CELL * j;
-    for (int k = 0; k < HAIRLUT_HALF(width); ++k, stored += axis->pitch) {
+    float *low = cells + HAIRLUT_CELL * j, *high = low + (axis->ends[1] - axis->ends[0]);
+    for (int k = 0; k < HAIRLUT_HALF(width); ++k, low += axis->pitch, high += axis->pitch) {
         const int h = width - 2 - k;
-        store_cell(stored, row[k], row[k + 1] - row[k], curvature(row, width, k, limit));
-        store_cell(stored + axis->half, row[h + 1], row[h] - row[h + 1], curvature(row, width, h, limit));
+        store_cell(low, row[k], row[k + 1] - row[k], curvature(row, width, k, limit));
+        store_cell(high, row[h + 1], row[h] - row[h + 1], curvature(row, width, h, limit));
     }
 }
 

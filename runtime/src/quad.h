@@ -21,6 +21,15 @@ static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { re
 static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return _mm_sub_ps(a, b); }
 static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return _mm_mul_ps(a, b); }
 
+/* r >= 0 as its integer part and, in all lanes, its fraction. */
+static inline hairlut_quad hairlut_quad_split(float r, int *whole)
+{
+    const __m128 all = _mm_set1_ps(r);
+    const __m128i truncated = _mm_cvttps_epi32(all);
+    *whole = _mm_cvtsi128_si32(truncated);
+    return _mm_sub_ps(all, _mm_cvtepi32_ps(truncated));
+}
+
 static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
 {
     lane[0] = _mm_cvtss_f32(a);
@@ -52,6 +61,12 @@ static inline hairlut_quad hairlut_quad_all(float a) { return vdupq_n_f32(a); }
 static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { return vaddq_f32(a, b); }
 static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return vsubq_f32(a, b); }
 static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return vmulq_f32(a, b); }
+
+static inline hairlut_quad hairlut_quad_split(float r, int *whole)
+{
+    *whole = (int)r;
+    return vdupq_n_f32(r - (float)*whole);
+}
 
 static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
 {
@@ -107,6 +122,12 @@ static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b)
     for (int l = 0; l < 4; ++l)
         a.lane[l] *= b.lane[l];
     return a;
+}
+
+static inline hairlut_quad hairlut_quad_split(float r, int *whole)
+{
+    *whole = (int)r;
+    return hairlut_quad_all(r - (float)*whole);
 }
 
 static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])

@@ -1,20 +1,26 @@
 /* One direction at a time: sample, pdf and invert of both lobes. */
 #include "lobes.h"
 
+static hairlut_sample finish(const hairlut_axis *axis, float theta_i, float phi_i, float pdf)
+{
+    const hairlut_sample s = {hairlut_axis_inside(axis, theta_i), phi_i, pdf, hairlut_per_steradian(pdf, theta_i)};
+    return s;
+}
+
 hairlut_sample hairlut_sample_direct(const hairlut_model *model, float theta_r, float phi_r, float u_theta, float u_phi)
 {
     const hairlut_draw theta = hairlut_axis_sample(&model->direct_theta, theta_r, u_theta);
     const hairlut_draw phi = hairlut_axis_sample(&model->direct_phi, theta_r, u_phi);
     const float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * phi.pdf : 0.0f;
-    return hairlut_finish(theta.x, hairlut_incident_azimuth(model, phi_r, phi.x), pdf);
+    return finish(&model->direct_theta, theta.x, hairlut_incident_azimuth(model, phi_r, phi.x), pdf);
 }
 
 hairlut_sample hairlut_sample_multiple(const hairlut_model *model, float theta_r, float phi_r, float u_theta, float u_phi)
 {
     const hairlut_draw theta = hairlut_axis_sample(&model->multiple_theta, theta_r, u_theta);
-    const float phi = hairlut_wrap_once(hairlut_two_pi * hairlut_clamp(u_phi, 0.0f, 1.0f) - hairlut_pi, -hairlut_pi);
+    const float phi = hairlut_two_pi * hairlut_clamp(u_phi, 0.0f, 1.0f) - hairlut_pi;
     const float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_inverse_two_pi : 0.0f;
-    return hairlut_finish(theta.x, phi, pdf);
+    return finish(&model->multiple_theta, theta.x, phi < hairlut_pi ? phi : -hairlut_pi, pdf);
 }
 
 float hairlut_pdf_direct(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i)
@@ -53,5 +59,5 @@ void hairlut_invert_multiple(const hairlut_model *model, float theta_r, float ph
 
 float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)
 {
-    return pdf_angle / hairlut_cos(theta_i);
+    return hairlut_per_steradian(pdf_angle, theta_i);
 }

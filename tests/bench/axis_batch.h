@@ -12,7 +12,7 @@ static void axis_sample(const hairlut_axis *axis, size_t n, const float *theta_r
         place(axis, m, theta_r + b, u + b, &p);
         for (size_t s = 0; s < m; s += LANES) {
             real q;
-            store(x + b + s, draw(axis, &p, s, &q));
+            store(x + b + s, clamp(draw(axis, &p, s, &q), all(axis->low), all(axis->high)));
             store(pdf + b + s, q);
         }
     }

@@ -5,7 +5,9 @@
 
 __attribute__((noinline)) static hairlut_draw draw(const hairlut_axis *axis, float theta_r, float u)
 {
-    return hairlut_axis_sample(axis, theta_r, u);
+    hairlut_draw drawn = hairlut_axis_sample(axis, theta_r, u);
+    drawn.x = hairlut_axis_inside(axis, drawn.x);
+    return drawn;
 }
 
 __attribute__((noinline)) static float density(const hairlut_axis *axis, float theta_r, float x)

@@ -14,15 +14,15 @@ from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    "sample_direct": 294,
-    "sample_multiple": 199,
-    "pdf_direct": 595,
-    "pdf_multiple": 288,
-    "sample_direct_n": 40,
-    "sample_multiple_n": 22,
-    "pdf_direct_n": 135,
-    "pdf_multiple_n": 65,
-    "sample_mixture_n": 356,
+    "sample_direct": 242,
+    "sample_multiple": 157,
+    "pdf_direct": 524,
+    "pdf_multiple": 257,
+    "sample_direct_n": 39,
+    "sample_multiple_n": 21,
+    "pdf_direct_n": 136,
+    "pdf_multiple_n": 66,
+    "sample_mixture_n": 343,
 }
 
 

@@ -55,11 +55,12 @@ static const hairlut_axis *axis_of(const hairlut_model *model, int axis)
     return axis == 0 ? &model->direct_theta : axis == 1 ? &model->direct_phi : &model->multiple_theta;
 }
 
+/* As the functions of hairlut.h return an angle: in the domain. */
 LOOP void axis_sample(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *u, float *x, float *pdf)
 {
     for (size_t i = 0; i < n; ++i) {
         const hairlut_draw draw = hairlut_axis_sample(axis_of(model, axis), theta_r[i], u[i]);
-        x[i] = draw.x;
+        x[i] = hairlut_axis_inside(axis_of(model, axis), draw.x);
         pdf[i] = draw.pdf;
     }
 }

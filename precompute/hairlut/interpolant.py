@@ -89,6 +89,19 @@ class Cells:
         """dx/df, likewise."""
         return _slope(self.d[n, i], self.c[n, i], f)
 
+    def column(self, x: Array) -> Array:
+        """(n, K) columns, with their fractions, at which the angles x (n, K) lie; x is clamped to the
+        row's ends."""
+        i = np.maximum((self.x0[:, None, :] <= x[:, :, None]).sum(axis=2) - 1, 0)
+        return i + self.fraction_at(np.arange(len(x))[:, None], i, x)[0]
+
+    def fraction_at(self, n: Array, i: Array, x: Array) -> tuple[Array, Array]:
+        """(fraction f, slope dx/df) at which the angles x lie in the cells i, likewise."""
+        d, c = self.d[n, i], self.c[n, i]
+        distance = np.clip(x - self.x0[n, i], 0.0, d)
+        slope = np.sqrt(np.maximum((d + c) ** 2 - 4 * c * distance, 0.0))
+        return np.clip(2 * distance / (d + c + slope), 0.0, 1.0), slope
+
     def du_at(self, i: Array, f: Array) -> Array:
         """du/dcolumn at the fractions f of the cells i, broadcast against each other."""
         return self.table.warp.du(i, f, self.table.width)
@@ -139,11 +152,7 @@ def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Arra
     """(cell i, fraction f, slope dx/df), each (n,), at which x (n,) lies; x is clamped to the row's ends."""
     read = cells(table, theta_r)
     i = np.clip((read.x0 <= np.asarray(x)[:, None]).sum(axis=1) - 1, 0, table.width - 2)
-    n = np.arange(len(i))
-    d, c = read.d[n, i], read.c[n, i]
-    distance = np.clip(x - read.x0[n, i], 0.0, d)
-    slope = np.sqrt(np.maximum((d + c) ** 2 - 4 * c * distance, 0.0))
-    return i, np.clip(2 * distance / (d + c + slope), 0.0, 1.0), slope
+    return i, *read.fraction_at(np.arange(len(i)), i, x)
 
 
 def _nearer_end(table: "Table", i: Array, f: Array) -> tuple[Array, Array]:

@@ -6,34 +6,37 @@ from .integrate import EPS, NODES, WEIGHTS, Integral
 from .lobes import Array
 
 NEWTON_STEPS, BISECTIONS = 40, 80
+ALL = slice(None)
 
 
-def invert(integral: Integral, m: Array, upper: Array) -> Array:
-    """Angles (R, K) with the part m (K,) of a row's mass below them, or above them where upper (K,) is set.
+def invert(integral: Integral, m: Array, upper: Array, rows: slice | Array = ALL) -> Array:
+    """Angles with the part m (K,) of a row's mass below them, or above them where upper (K,) is set, in these
+    of the integral's rows; (number of rows, K).
 
     m in [0, 1]; with m <= 1/2 and `upper` chosen accordingly both tails come out to full relative precision.
     m = 0 gives the end of the domain exactly.
     """
     m, upper = np.broadcast_arrays(np.asarray(m, float), upper)
-    result = np.empty((len(integral.mantissa), len(m)))
+    numbers = np.arange(len(integral.mantissa))[rows]
+    result = np.empty((len(numbers), len(m)))
     for side in (False, True):
         if (upper == side).any():
-            result[:, upper == side] = _invert_side(integral, m[upper == side], side)
+            result[:, upper == side] = _invert_side(integral, numbers, m[upper == side], side)
     return result
 
 
-def _invert_side(integral: Integral, m: Array, upper: bool) -> Array:
-    edges, running = integral.edges, integral.below
+def _invert_side(integral: Integral, rows: Array, m: Array, upper: bool) -> Array:
+    edges, running = integral.edges[rows], integral.below[rows]
     if upper:  # the same from the other end
-        edges, running = edges[:, ::-1], integral.above[:, ::-1]
-    target = m * integral.mantissa[:, None]
+        edges, running = edges[:, ::-1], integral.above[rows, ::-1]
+    target = m * integral.mantissa[rows, None]
     panel = np.array([np.searchsorted(run, t) for run, t in zip(running, target, strict=True)])
     panel = np.clip(panel - 1, 0, running.shape[1] - 2)
     at = np.arange(len(running))[:, None]
     start, end = edges[at, panel], edges[at, panel + 1]
     rest = target - running[at, panel]
     mass = running[at, panel + 1] - running[at, panel]
-    row = np.broadcast_to(at, panel.shape)
+    row = np.broadcast_to(rows[:, None], panel.shape)
     x = _newton(integral, row.ravel(), start.ravel(), end.ravel(), rest.ravel(), mass.ravel(), target.ravel())
     return x.reshape(panel.shape)
 

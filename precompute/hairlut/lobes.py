@@ -38,6 +38,7 @@ class Lobe:
     moments         (mean, sigma) at theta_r if the lobe is a Gaussian; for the closed form, not for the bake
     own_height      for a lobe given as rows, the fewest rows of a table that include them: between its rows
                     such a lobe bends, and only these tables bend with it
+    exact           exact(theta_r (R,)) -> what exact.Exact is, if the lobe knows its own integral
     """
 
     model: str
@@ -51,6 +52,7 @@ class Lobe:
     breakpoints: Breakpoints = ()
     moments: Moments | None = None
     own_height: int = 0
+    exact: Callable | None = None
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .integrate import Integral, integrate, rows_of_lobe
+from .exact import Exact, exact_at
 from .interpolant import Cells, cells
-from .invert import invert
 from .lobes import Array, Lobe
 from .table import Table
 
@@ -35,6 +34,7 @@ OUTER = 2.0**-24
 
 _nodes, _weights = np.polynomial.legendre.leggauss(ORDER)
 NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
+ENDS = np.array([0.0, 1.0])
 # What ORDER points, weighted, give as the coefficients of the two highest Legendre polynomials that they
 # resolve.
 LAST_TWO = np.polynomial.legendre.legvander(_nodes, ORDER - 1)[:, -2:] * (2 * np.arange(ORDER - 2, ORDER) + 1)
@@ -43,34 +43,6 @@ OWN_ERROR = 1e-2
 MAX_FEATURES = 8
 CELL_ERROR = 1e-4  # or this part of a row's variance, shared by its cells
 ROUNDING = 1e-18
-
-
-class Exact:
-    """The normalised lobe at theta_r (R,)."""
-
-    def __init__(self, lobe: Lobe, theta_r: Array):
-        self.lobe = lobe
-        self.theta_r = theta_r
-        self.integral: Integral = integrate(rows_of_lobe(lobe, theta_r))
-        (low, high), edges = lobe.domain, self.integral.edges
-        self._edges = (np.arange(len(edges))[:, None] + (edges - low) / (high - low) / 2).ravel()
-
-    def density(self, x: Array, row: Array) -> Array:
-        """(n, k) density at x (n, k), per rad, in the rows row (n,)."""
-        inside = np.clip(x, *self.lobe.domain)  # a texel may round to just outside
-        return np.exp(self.integral.rows.log_density(inside, row) - self.integral.log_mass[row][:, None])
-
-    def features(self, row: Array, a: Array, b: Array) -> Array:
-        """(n,) edges between a and b (n,) of the panels by which the rows row (n,) were integrated: many
-        where the density varies fast."""
-        low, high = self.lobe.domain
-        return np.searchsorted(self._edges, row + (b - low) / (high - low) / 2) - np.searchsorted(
-            self._edges, row + (a - low) / (high - low) / 2
-        )
-
-    def quantiles(self, m: Array, upper: Array) -> Array:
-        """(R, K) angles of the tails m, upper (K,)."""
-        return invert(self.integral, m, upper)
 
 
 @dataclass(frozen=True)
@@ -146,23 +118,28 @@ def inclinations(theta_r_range: tuple[float, float], height: int, between: int =
 
 
 def measure(
-    table: Table, lobe: Lobe, between: int = BETWEEN, quantiles: bool = True, exact: Exact | None = None
+    table: Table,
+    lobe: Lobe,
+    between: int = BETWEEN,
+    quantiles: bool = True,
+    exact: Exact | None = None,
+    at: Array | None = None,
 ) -> Errors:
     """Errors of a table that is to sample the lobe, on its rows and between them.
 
     quantiles: also compare quantiles, which takes most of the time. exact: the lobe at these inclinations, if
-    the caller has it already.
+    the caller has it already. at: numbers of the inclinations that are measured, if not all.
     """
-    exact = exact or Exact(lobe, inclinations(table.theta_r_range, table.height, between))
-    step = max(1, CHUNK // (ORDER * (table.width - 1)))
-    rows = [np.arange(n, min(n + step, len(exact.theta_r))) for n in range(0, len(exact.theta_r), step)]
-    parts = [_densities(table, exact, row) for row in rows]
+    exact = exact or exact_at(lobe, inclinations(table.theta_r_range, table.height, between))
+    at = np.arange(len(exact.theta_r)) if at is None else at
+    step = max(1, CHUNK // (ORDER * (table.width - 1 + exact.knots.shape[1])))
+    parts = [_densities(table, exact, at[n : n + step]) for n in range(0, len(at), step)]
     variance, weight, heavy, variation, lost = (np.concatenate(column) for column in zip(*parts, strict=True))
     if quantiles:
-        quantile, inner = _quantiles(table, exact)
+        quantile, inner = _quantiles(table, exact, at)
     else:
         quantile = inner = np.full(len(variance), np.nan)
-    return Errors(exact.theta_r, variance, weight, heavy, variation, lost, quantile, inner)
+    return Errors(exact.theta_r[at], variance, weight, heavy, variation, lost, quantile, inner)
 
 
 def flat_cells(texels: Array) -> int:
@@ -179,23 +156,23 @@ def narrowest_cell(texels: Array) -> float:
 def _densities(table: Table, exact: Exact, row: Array) -> tuple[Array, ...]:
     """(variance, weight, heavy, variation, lost) of the inclinations numbered row."""
     read = cells(table, exact.theta_r[row])
-    n, i = (index.ravel() for index in np.indices(read.d.shape))
-    low, size = np.zeros(len(n)), np.ones(len(n))
+    n, i, low, size = _panels(read, exact.knots[row])
     square, absolute, heavy, reached = (np.zeros(len(row)) for _ in range(4))
-    at_knots, _ = _weights(read, exact, row, n, i, np.array([[0.0, 1.0]]))
-    weight = at_knots.reshape(len(row), -1).max(axis=1)
+    at_knots, _ = _weights(read, exact, row, n, i, low + size * ENDS[:, None])
+    weight = np.maximum.reduceat(at_knots.max(axis=0), np.searchsorted(n, np.arange(len(row))))
     for depth in range(MAX_DEPTH):
-        w, du = _weights(read, exact, row, n, i, low[:, None] + size[:, None] * NODES)
-        np.maximum.at(weight, n, w.max(axis=1))
-        du = du * (size[:, None] * WEIGHTS)
-        value = (du * (w - 1) ** 2).sum(axis=1)
-        tail = abs((du * (w - 1) ** 2) @ LAST_TWO).sum(axis=1)
+        w, du = _weights(read, exact, row, n, i, low + size * NODES[:, None])
+        np.maximum.at(weight, n, w.max(axis=0))
+        du = du * (size * WEIGHTS[:, None])
+        squares = du * (w - 1) ** 2
+        value = squares.sum(axis=0)
+        tail = abs(LAST_TWO.T @ squares).sum(axis=0)
         if depth == 0:
             allowed = CELL_ERROR / table.width * np.bincount(n, value, len(row)) + ROUNDING
         split = tail > np.maximum(OWN_ERROR * value, allowed[n])
         split |= exact.features(row[n], *read.angle_at(n, i, np.array([low, low + size]))) > MAX_FEATURES
         split &= depth < MAX_DEPTH - 1
-        parts = value, *((du * x).sum(axis=1) for x in (abs(w - 1), w > HEAVY, w))
+        parts = value, *((du * x).sum(axis=0) for x in (abs(w - 1), w > HEAVY, w))
         for total, part in zip((square, absolute, heavy, reached), parts, strict=True):
             total += np.bincount(n[~split], part[~split], len(row))
         if not split.any():
@@ -208,19 +185,28 @@ def _densities(table: Table, exact: Exact, row: Array) -> tuple[Array, ...]:
     return square - 2 * lost, weight, heavy, (absolute + lost) / 2, lost
 
 
+def _panels(read: Cells, knots: Array) -> tuple[Array, Array, Array, Array]:
+    """The cells, cut at the knots (n, K) of the exact density: inclinations and cells (P,) by number, and
+    the fractions of the cells at which the panels begin and that they span."""
+    at = np.tile(np.arange(read.d.shape[1] + 1.0), (len(knots), 1))
+    at = np.sort(np.concatenate([at, read.column(knots)], axis=1), axis=1)
+    n, k = np.nonzero(np.diff(at) > 0)
+    i = at[n, k].astype(int)
+    return n, i, at[n, k] - i, at[n, k + 1] - at[n, k]
+
+
 def _weights(read: Cells, exact: Exact, row: Array, n: Array, i: Array, f: Array) -> tuple[Array, Array]:
-    """(f/q, du/dcolumn) at the fractions f (P, K) of the cells n, i (P,)."""
-    n, i = n[:, None], i[:, None]
+    """(f/q, du/dcolumn) at the fractions f (K, P) of the cells n, i (P,), between two knots each."""
     du = read.du_at(i, f)
-    return exact.density(read.angle_at(n, i, f), row[n[:, 0]]) * read.slope_at(n, i, f) / du, du
+    return exact.density(read.angle_at(n, i, f), row[n]) * read.slope_at(n, i, f) / du, du
 
 
-def _quantiles(table: Table, exact: Exact) -> tuple[Array, Array]:
+def _quantiles(table: Table, exact: Exact, at: Array) -> tuple[Array, Array]:
     """Per inclination, the largest quantile error in the whole and in the inner range of u."""
     m, upper = _probabilities(table)
     i, f = table.warp.place(m, upper, table.width)
-    read = cells(table, exact.theta_r)
-    error = abs(read.angle_at(np.arange(len(exact.theta_r))[:, None], i, f) - exact.quantiles(m, upper))
+    read = cells(table, exact.theta_r[at])
+    error = abs(read.angle_at(np.arange(len(at))[:, None], i, f) - exact.quantiles(m, upper, at))
     return error.max(axis=1), error[:, m >= INNER].max(axis=1)
 
 

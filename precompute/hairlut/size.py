@@ -17,10 +17,10 @@ from functools import cache, partial
 import numpy as np
 
 from .errors import HairlutError
-from .integrate import Integral, integrate, rows_of_lobe
+from .exact import Exact, exact_at
 from .interpolant import Cell
 from .lobes import Array, Lobe
-from .measure import BETWEEN, Errors, Exact, inclinations, measure, narrowest_cell
+from .measure import BETWEEN, Errors, inclinations, measure, narrowest_cell
 from .table import Table, check_size, row_angles, tabulate
 from .warp import Warp
 
@@ -33,6 +33,7 @@ FIRST_EXPONENT = -16
 PROBE_HEIGHT = 33  # rows on which a width alone is judged
 WIDEST = 2
 SEARCHED_BETWEEN = 1  # midway between rows is the worst place
+FEW = 7  # every so many inclinations are measured first; odd, so that rows and places between them take turns
 SLACK = 1.1  # an e is as good as a smaller one if its variance is within this factor
 
 
@@ -87,18 +88,55 @@ def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cel
 
 
 def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Choice:
-    """The table of a given size, with the largest e whose V is within SLACK of the best."""
+    """The table of a given size, with the e of least weights among those whose V is within SLACK of the
+    best."""
     check_size(width, height)
-    trials = _Trials(lobe, cell)
-    exponent = trials.best_exponent(width, height, SEARCHED_BETWEEN, FIRST_EXPONENT)
-    bound = SLACK * trials.variance(width, height, exponent, SEARCHED_BETWEEN)
-    if not np.isfinite(bound):
+    exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, BETWEEN))
+    tables = {e: _usable(lobe, exact, width, e, cell) for e in EXPONENTS}
+    tables = {e: table for e, table in tables.items() if table}
+    if not tables:
         raise HairlutError(
             f"{lobe.model}/{lobe.name}: at {width}x{height} some cell is narrower than {MIN_STEPS:g} steps "
             "of a float with every e: use fewer columns"
         )
-    exponent = trials.largest_exponent(width, height, SEARCHED_BETWEEN, exponent, bound)
-    return trials.choice(width, height, exponent, "size as asked, largest e within 10% of the least V")
+    table = tables[_lightest(tables, lobe, exact)]
+    return Choice(
+        table, measure(table, lobe, exact=exact), "size as asked, lightest e within 10% of the least V"
+    )
+
+
+def _usable(lobe: Lobe, exact: Exact, width: int, exponent: int, cell: Cell) -> Table | None:
+    """The table whose rows are every (BETWEEN + 1)th of the exact lobe's; None if a cell is flat or too
+    narrow for float32."""
+    rows = slice(None, None, BETWEEN + 1)
+    try:
+        table = tabulate(lobe, exact, width, Warp("quartic", 2.0**exponent), cell, rows)
+    except HairlutError:  # flat cells
+        return None
+    return table if narrowest_cell(table.texels) >= MIN_STEPS else None
+
+
+def _lightest(tables: dict[int, Table], lobe: Lobe, exact: Exact) -> int:
+    """The exponent of e with the least largest weight, among those whose V is within SLACK of the least.
+
+    V is judged on rows and midway between them. What it is on few of these bounds it from below, which most
+    e do not survive; then it matters little how many there are.
+    """
+    searched = np.arange(0, len(exact.theta_r), (BETWEEN + 1) // (SEARCHED_BETWEEN + 1))
+    few = searched[::FEW]
+
+    def errors(exponent: int, at: Array) -> Errors:
+        return measure(tables[exponent], lobe, quantiles=False, exact=exact, at=at)
+
+    bound = {e: errors(e, few).relative_variance for e in tables}
+    variance, weight = {}, {}
+    for e in sorted(bound, key=bound.get):
+        if variance and bound[e] > SLACK * min(variance.values()):
+            break
+        found = errors(e, searched)
+        variance[e], weight[e] = found.relative_variance, found.largest_weight
+    good = [e for e in variance if variance[e] <= SLACK * min(variance.values())]
+    return min(good, key=weight.get)
 
 
 class _Trials:
@@ -110,15 +148,14 @@ class _Trials:
         self.exact = cache(self._exact)
         self.variance = cache(self._variance)
 
-    def _rows(self, height: int) -> tuple[Array, Integral]:
-        theta_r = row_angles(self.lobe.theta_r_range, height)
-        return theta_r, integrate(rows_of_lobe(self.lobe, theta_r))
+    def _rows(self, height: int) -> Exact:
+        return exact_at(self.lobe, row_angles(self.lobe.theta_r_range, height))
 
     def _exact(self, height: int, between: int) -> Exact:
-        return Exact(self.lobe, inclinations(self.lobe.theta_r_range, height, between))
+        return exact_at(self.lobe, inclinations(self.lobe.theta_r_range, height, between))
 
     def table(self, width: int, height: int, exponent: int) -> Table:
-        return tabulate(self.lobe, *self.rows(height), width, Warp("quartic", 2.0**exponent), self.cell)
+        return tabulate(self.lobe, self.rows(height), width, Warp("quartic", 2.0**exponent), self.cell)
 
     def _variance(self, width: int, height: int, exponent: int, between: int) -> float:
         """V at the worst inclination; infinite where a cell is flat or too narrow for float32."""

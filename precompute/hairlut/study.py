@@ -15,11 +15,12 @@ from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 
 from .errors import HairlutError
+from .exact import Exact
 from .integrate import integrate, rows_of_lobe
 from .interpolant import Cell
 from .invert import invert
 from .lobes import FITTED, HALF_PI, PRINTED, Array, Lobe
-from .measure import Errors, Exact, flat_cells, inclinations, measure, narrowest_cell
+from .measure import Errors, flat_cells, inclinations, measure, narrowest_cell
 from .table import Table, row_angles
 from .warp import Warp
 

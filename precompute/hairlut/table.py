@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import HairlutError
-from .integrate import Integral, integrate, rows_of_lobe
+from .exact import Exact, exact_at
 from .interpolant import Cell
-from .invert import invert
+from .invert import ALL
 from .lobes import Array, Lobe
 from .warp import Warp
 
@@ -64,14 +64,16 @@ def check_size(width: int, height: int) -> None:
 
 def bake_table(lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell) -> Table:
     """Integrates, normalises, inverts and rounds a lobe once; HairlutError if a cell comes out flat."""
-    theta_r = row_angles(lobe.theta_r_range, height)
-    return tabulate(lobe, theta_r, integrate(rows_of_lobe(lobe, theta_r)), width, warp, cell)
+    return tabulate(lobe, exact_at(lobe, row_angles(lobe.theta_r_range, height)), width, warp, cell)
 
 
-def tabulate(lobe: Lobe, theta_r: Array, integral: Integral, width: int, warp: Warp, cell: Cell) -> Table:
-    """The table whose rows, at theta_r (height,), have been integrated already."""
+def tabulate(
+    lobe: Lobe, exact: Exact, width: int, warp: Warp, cell: Cell, rows: slice | Array = ALL
+) -> Table:
+    """The table whose rows are these of the exact lobe's, evenly spaced over the lobe's range of theta_r."""
+    theta_r = exact.theta_r[rows]
     check_size(width, len(theta_r))
-    texels = invert(integral, *warp.knots(width)).astype(np.float32)
+    texels = exact.quantiles(*warp.knots(width), rows).astype(np.float32)
     _refuse_flat_cells(lobe, theta_r, texels, warp)
     return Table(
         lobe.model,
@@ -84,7 +86,7 @@ def tabulate(lobe: Lobe, theta_r: Array, integral: Integral, width: int, warp: W
         warp,
         cell,
         texels,
-        integral.log_mass,
+        exact.log_mass[rows],
     )
 
 

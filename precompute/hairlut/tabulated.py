@@ -11,9 +11,11 @@ nearest row holds.
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+from scipy.interpolate import PchipInterpolator
 
+from .cubics import Cubics
 from .errors import HairlutError
+from .invert import ALL
 
 FLOOR = 1e-4
 """Share of each row's mass that is spread evenly: where data have nothing, a renderer may have something."""
@@ -38,38 +40,27 @@ class TabulatedDensity:
         self.edges, self.theta_r = edges, theta_r
         even = np.diff(edges) / (edges[-1] - edges[0])
         share = (1 - floor) * mass / mass.sum(axis=1, keepdims=True) + floor * even
-        self._u = np.concatenate([np.zeros((len(theta_r), 1)), np.cumsum(share, axis=1)], axis=1)
-        self._u /= self._u[:, -1:]
-        self._cubics = [PchipInterpolator(edges, u) for u in self._u]
-        self._rows: dict[float, CubicHermiteSpline] = {}
-        self._last: tuple[np.ndarray, _Joined] | None = None
+        u = np.concatenate([np.zeros((len(theta_r), 1)), np.cumsum(share, axis=1)], axis=1)
+        u /= u[:, -1:]
+        slope = np.maximum(PchipInterpolator(edges, u, axis=1)(edges, 1), 0.0)
+        self._own = Cubics(np.tile(edges, (len(theta_r), 1)), u, slope)
+        self._slope = slope
+        self._last: tuple[np.ndarray, Cubics] | None = None
 
     def __call__(self, x, theta_r):
         """Log-density at x and theta_r (rad, broadcast against each other); -inf outside the domain."""
         x, theta_r = np.asarray(x, np.float64), np.asarray(theta_r, np.float64)
-        shape = np.broadcast_shapes(x.shape, theta_r.shape)
         angles, which = np.unique(theta_r, return_inverse=True)
-        which = np.broadcast_to(which.reshape(theta_r.shape), shape)
-        x = np.broadcast_to(x, shape)
+        which = which.reshape(theta_r.shape)
         low, high = self.edges[0], self.edges[-1]
-        density = np.maximum(self._joined(angles).slope(x, which), 1e-9 / (high - low))
+        density = self.rows(angles).density(x, which)
         density = np.where((x < low) | (x > high), 0.0, density)
         with np.errstate(divide="ignore"):
             return np.log(density)
 
-    def _joined(self, angles: np.ndarray) -> _Joined:
-        """The rows at these theta_r, kept for as long as the same ones are asked for."""
-        if self._last is None or not np.array_equal(self._last[0], angles):
-            self._last = angles, _Joined([self.row(float(angle)) for angle in angles])
-        return self._last[1]
-
     def breakpoints(self, theta_r) -> np.ndarray:
         """(R, B) knots of the rows at theta_r (R,), filled up with the domain's end."""
-        knots = [self.row(float(angle)).x for angle in np.ravel(theta_r)]
-        filled = np.full((len(knots), max(map(len, knots))), self.edges[-1])
-        for row, x in zip(filled, knots, strict=True):
-            row[: len(x)] = x
-        return filled
+        return self.rows(np.ravel(theta_r)).x
 
     @property
     def own_height(self) -> int:
@@ -80,71 +71,71 @@ class TabulatedDensity:
                 return height
         return 0
 
-    def row(self, theta_r: float) -> CubicHermiteSpline:
-        """The cumulative mass of the row at theta_r as a piecewise cubic of x."""
-        if theta_r not in self._rows:
-            self._rows[theta_r] = self._blend(theta_r)
-        return self._rows[theta_r]
+    def rows(self, theta_r: np.ndarray) -> Cubics:
+        """The rows at theta_r (R,), kept for as long as the same ones are asked for."""
+        if self._last is None or not np.array_equal(self._last[0], theta_r):
+            self._last = np.array(theta_r), self._blended(theta_r)
+        return self._last[1]
 
-    def _blend(self, theta_r: float):
-        at = float(np.interp(theta_r, self.theta_r, np.arange(len(self.theta_r))))
-        j, t = int(at), at - int(at)
-        if t == 0.0:
-            return self._cubics[j]
-        u = np.union1d(self._u[j], self._u[j + 1])
-        u = u[np.append(True, np.diff(u) > MERGE[1])]
-        u[-1] = 1.0
-        low, high = (_quantiles(self._cubics[k], self._u[k], self.edges, u) for k in (j, j + 1))
+    def exact(self, theta_r: np.ndarray) -> ExactRows:
+        """As exact.Exact, in closed form."""
+        return ExactRows(theta_r, self.rows(theta_r))
+
+    def _blended(self, theta_r: np.ndarray) -> Cubics:
+        at = np.interp(theta_r, self.theta_r, np.arange(len(self.theta_r)))
+        j = at.astype(int)
+        t = (at - j)[:, None]
+        pairs, which = np.unique(j, return_inverse=True)
+        u, *blended = (part[which] for part in self._pairs(pairs))
+        low, high, dense_low, dense_high = blended
+        with np.errstate(divide="ignore", invalid="ignore"):  # a density of zero at an edge
+            slope = 1 / ((1 - t) / dense_low + t / dense_high)
         x = (1 - t) * low + t * high
-        x[0], x[-1] = self.edges[0], self.edges[-1]
-        with np.errstate(divide="ignore"):  # a density of zero at an edge
-            density = 1 / (
-                (1 - t) / np.maximum(self._cubics[j](low, 1), 0)
-                + t / np.maximum(self._cubics[j + 1](high, 1), 0)
-            )
-        kept = np.append(np.diff(x) > MERGE[0] * (x[-1] - x[0]), True)
-        kept[0] = True
-        return _monotone(x[kept], u[kept], density[kept])
+        x[:, 0], x[:, -1] = self.edges[0], self.edges[-1]
+        kept = np.diff(x) > MERGE[0] * (self.edges[-1] - self.edges[0])
+        x, u, slope = _only(np.pad(kept, ((0, 0), (0, 1)), constant_values=True), x, u, slope)
+        given = np.broadcast_to(self.edges, (len(j), self.edges.size)), self._own.u[j], self._slope[j]
+        own = (_widened(part, x) for part in given)
+        return Cubics(*(np.where(t > 0, a, b) for a, b in zip((x, u, slope), own, strict=True)))
+
+    def _pairs(self, j: np.ndarray) -> tuple[np.ndarray, ...]:
+        """For the rows j (P,) and their successors: the masses at the knots of both, and there the quantiles
+        and then the densities of the one and of the other, all (P, K)."""
+        after = np.minimum(j + 1, len(self.theta_r) - 1)
+        u = np.sort(np.concatenate([self._own.u[j], self._own.u[after]], axis=1), axis=1)
+        (u,) = _only(np.diff(u, axis=1, prepend=-1) > MERGE[1], u)
+        x = [self._own.quantile(u, row[:, None]) for row in (j, after)]
+        return u, *x, *(self._own.density(q, row[:, None]) for q, row in zip(x, (j, after), strict=True))
 
 
-class _Joined:
-    """Cubics over one interval as a single one, so that points of many rows are looked up at once."""
+class ExactRows:
+    """The normalised density at theta_r (R,), with the methods of exact.Exact; no sums are needed."""
 
-    def __init__(self, rows: list[CubicHermiteSpline]):
-        self._low, self._scale = rows[0].x[0], 0.5 / (rows[0].x[-1] - rows[0].x[0])
-        self._x = np.concatenate([row.x for row in rows])
-        ends = np.cumsum([row.x.size for row in rows])
-        self._first, self._last = ends - [row.x.size for row in rows], ends - 2  # of the pieces of each row
-        self._c = np.concatenate([np.append(row.c, row.c[:, -1:], axis=1) for row in rows], axis=1)
-        self._key = self._place(self._x, np.repeat(np.arange(len(rows)), [row.x.size for row in rows]))
+    def __init__(self, theta_r: np.ndarray, cubics: Cubics):
+        self.theta_r, self._cubics = theta_r, cubics
+        self.log_mass, self.knots = np.zeros(len(theta_r)), cubics.x
 
-    def _place(self, x: np.ndarray, row: np.ndarray) -> np.ndarray:
-        return row + (x - self._low) * self._scale
+    def density(self, x: np.ndarray, row: np.ndarray) -> np.ndarray:
+        return self._cubics.density_between(x, row)
 
-    def slope(self, x: np.ndarray, row: np.ndarray) -> np.ndarray:
-        """The derivative at x of the cubics numbered row, of one shape."""
-        i = np.searchsorted(self._key, self._place(x, row), side="right") - 1
-        i = np.clip(i, self._first[row], self._last[row])
-        d = x - self._x[i]
-        return (3 * self._c[0, i] * d + 2 * self._c[1, i]) * d + self._c[2, i]
+    def features(self, row: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.zeros(len(row), int)
+
+    def quantiles(self, m: np.ndarray, upper: np.ndarray, rows: slice | np.ndarray = ALL) -> np.ndarray:
+        row = np.arange(len(self.theta_r))[rows]
+        return self._cubics.quantile(np.where(upper, 1 - m, m), row[:, None])
 
 
-def _quantiles(cubic: PchipInterpolator, u_edges: np.ndarray, edges: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """The angles below which the masses u lie; by bisection, as a cell's cubic may be flat at its ends."""
-    cell = np.clip(np.searchsorted(u_edges, u, side="right") - 1, 0, len(edges) - 2)
-    low, high = edges[cell], edges[cell + 1]
-    for _ in range(52):
-        middle = (low + high) / 2
-        below = cubic(middle) < u
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return (low + high) / 2
+def _only(kept: np.ndarray, *parts: np.ndarray) -> list[np.ndarray]:
+    """The columns of each row that are kept, and the last one for those that are not, at the end."""
+    order = np.argsort(~kept, axis=1, kind="stable")
+    last = kept.shape[1] - 1
+    order = np.where(np.arange(last + 1) < kept.sum(axis=1, keepdims=True), order, last)
+    return [np.take_along_axis(part, order, axis=1) for part in parts]
 
 
-def _monotone(x: np.ndarray, u: np.ndarray, density: np.ndarray) -> CubicHermiteSpline:
-    """The cubic through (x, u) with these slopes, lowered where it would turn back (Fritsch and Carlson)."""
-    secant = np.diff(u) / np.diff(x)
-    bound = 3 * np.minimum(np.append(secant[0], secant), np.append(secant, secant[-1]))
-    return CubicHermiteSpline(x, u, np.minimum(density, bound))
+def _widened(values: np.ndarray, like: np.ndarray) -> np.ndarray:
+    return np.pad(values, ((0, 0), (0, like.shape[1] - values.shape[1])), mode="edge")
 
 
 def _check(edges, theta_r, mass, name: str) -> None:

@@ -6,8 +6,9 @@ import pytest
 from scipy.stats import chi2
 
 from hairlut import interpolant
+from hairlut.exact import Exact
 from hairlut.lobes import HALF_PI, MODELS
-from hairlut.measure import Exact, flat_cells
+from hairlut.measure import flat_cells
 from hairlut.report.hard import CASES, attempt, ends, moving, normal, page
 from hairlut.size import table_of_size
 from runtime import tables

@@ -7,8 +7,9 @@ import numpy as np
 
 from .. import interpolant
 from ..errors import HairlutError
+from ..exact import Exact
 from ..lobes import FITTED, HALF_PI, PRINTED, Array, Lobe
-from ..measure import Exact, narrowest_cell
+from ..measure import narrowest_cell
 from ..size import Choice, table_of_size
 from ..table import Table
 from .markdown import table

@@ -388,9 +388,9 @@ hairlut_sample hairlut_sample_multiple(hairlut_model model, float theta_r, float
 {
     hairlut_draw theta = hairlut_axis_sample(model.multiple_theta, theta_r, u_theta);
     float u = clamp(hairlut_tame(u_phi, 0.0), 0.0, 1.0);
-    float phi = hairlut_wrap(hairlut_two_pi * u - hairlut_pi, -hairlut_pi);
+    float phi = hairlut_two_pi * u - hairlut_pi;
     float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_inverse_two_pi : 0.0;
-    return hairlut_finish(theta.x, phi, pdf);
+    return hairlut_finish(theta.x, phi < hairlut_pi ? phi : -hairlut_pi, pdf);
 }
 
 /* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */

@@ -337,9 +337,9 @@ fn hairlut_sample_direct(model: hairlut_model, theta_r: f32, phi_r: f32, u_theta
 fn hairlut_sample_multiple(model: hairlut_model, theta_r: f32, phi_r: f32, u_theta: f32, u_phi: f32) -> hairlut_sample {
     let theta = hairlut_axis_sample(model.multiple_theta, theta_r, u_theta);
     let u = clamp(hairlut_tame(u_phi, 0.0), 0.0, 1.0);
-    let phi = hairlut_wrap(hairlut_two_pi * u - hairlut_pi, -hairlut_pi);
+    let phi = hairlut_two_pi * u - hairlut_pi;
     let pdf = select(0.0, theta.pdf * hairlut_inverse_two_pi, hairlut_known(theta_r, phi_r, u_theta, u_phi));
-    return hairlut_finish(theta.x, phi, pdf);
+    return hairlut_finish(theta.x, select(-hairlut_pi, phi, phi < hairlut_pi), pdf);
 }
 
 /* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */

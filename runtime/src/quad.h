@@ -22,11 +22,11 @@ static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { re
 static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return _mm_mul_ps(a, b); }
 
 /* r >= 0 as its integer part and, in all lanes, its fraction. */
-static inline hairlut_quad hairlut_quad_split(float r, int *whole)
+static inline hairlut_quad hairlut_quad_split(float r, int *integer)
 {
     const __m128 all = _mm_set1_ps(r);
     const __m128i truncated = _mm_cvttps_epi32(all);
-    *whole = _mm_cvtsi128_si32(truncated);
+    *integer = _mm_cvtsi128_si32(truncated);
     return _mm_sub_ps(all, _mm_cvtepi32_ps(truncated));
 }
 
@@ -62,10 +62,10 @@ static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { re
 static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return vsubq_f32(a, b); }
 static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return vmulq_f32(a, b); }
 
-static inline hairlut_quad hairlut_quad_split(float r, int *whole)
+static inline hairlut_quad hairlut_quad_split(float r, int *integer)
 {
-    *whole = (int)r;
-    return vdupq_n_f32(r - (float)*whole);
+    *integer = (int)r;
+    return vdupq_n_f32(r - (float)*integer);
 }
 
 static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
@@ -124,10 +124,10 @@ static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b)
     return a;
 }
 
-static inline hairlut_quad hairlut_quad_split(float r, int *whole)
+static inline hairlut_quad hairlut_quad_split(float r, int *integer)
 {
-    *whole = (int)r;
-    return hairlut_quad_all(r - (float)*whole);
+    *integer = (int)r;
+    return hairlut_quad_all(r - (float)*integer);
 }
 
 static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])

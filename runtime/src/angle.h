@@ -38,20 +38,19 @@ static inline float hairlut_wrap(float phi, float low)
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 
-/* The same for phi from [low - 2 pi, low + 4 pi): at most one turn is added or taken away. */
-static inline float hairlut_wrap_once(float phi, float low)
-{
-    const float n = (float)((phi >= low + hairlut_two_pi) - (phi < low));
-    const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
-    return r >= low && r < low + hairlut_two_pi ? r : low;
-}
-
-/* The same for phi from [low, low + 4 pi): at most one turn is taken away, and without a branch, as half of all samples
- * need it. */
+/* The same for phi from [low, low + 4 pi): at most one turn is taken away. No branch, as half of all azimuths need it. */
 static inline float hairlut_wrap_down(float phi, float low)
 {
     const float high = low + hairlut_two_pi, n = 0.5f + copysignf(0.5f, phi - high);
     const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
+    return r < high ? r : low;
+}
+
+/* The same for phi from [low - 2 pi, low + 2 pi): at most one turn is added. */
+static inline float hairlut_wrap_up(float phi, float low)
+{
+    const float high = low + hairlut_two_pi, n = 0.5f - copysignf(0.5f, phi - low);
+    const float r = (phi + n * hairlut_two_pi_high) + n * hairlut_two_pi_low;
     return r < high ? r : low;
 }
 

@@ -4,6 +4,7 @@
  *   smaller(a, b) = a < b ? a : b and larger(a, b) = a > b ? a : b, so that NaN in a gives b
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
+ *   every(m)        whether all lanes are true
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
  *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n <= 16, 16 floats are read
  *
@@ -263,17 +264,12 @@ static inline real less_turns(real phi, real n, float low)
 static inline real wrap(real phi, float low)
 {
     const mask inside = both(at_least(phi, all(low)), greater(all(low + hairlut_two_pi), phi));
+    if (every(inside))
+        return phi;
     const real x = mul(sub(phi, all(low)), all(hairlut_inverse_two_pi));
     const real towards_zero = choose(greater(all(8388608.0f), magnitude(x)), converted(truncated(x)), x);
     const real turns = sub(towards_zero, choose(greater(towards_zero, x), all(1.0f), all(0.0f)));
     return choose(inside, phi, less_turns(phi, turns, low));
-}
-
-/* hairlut_wrap_once */
-static inline real wrap_once(real phi, float low)
-{
-    const real above = choose(at_least(phi, all(low + hairlut_two_pi)), all(1.0f), all(0.0f));
-    return less_turns(phi, choose(greater(all(low), phi), all(-1.0f), above), low);
 }
 
 /* hairlut_wrap_down */
@@ -283,6 +279,14 @@ static inline real wrap_down(real phi, float low)
     const real turned = sub(sub(phi, all(hairlut_two_pi_high)), all(hairlut_two_pi_low));
     const real r = choose(at_least(phi, high), turned, phi);
     return choose(greater(high, r), r, all(low));
+}
+
+/* hairlut_wrap_up */
+static inline real wrap_up(real phi, float low)
+{
+    const real turned = add(add(phi, all(hairlut_two_pi_high)), all(hairlut_two_pi_low));
+    const real r = choose(greater(all(low), phi), turned, phi);
+    return choose(greater(all(low + hairlut_two_pi), r), r, all(low));
 }
 
 /* hairlut_cos */
@@ -352,7 +356,7 @@ static inline void sample_multiple_block(const hairlut_model *model, size_t n, c
 static inline real relative_azimuth(const hairlut_model *model, real phi_r, real phi_i)
 {
     const real r = wrap(phi_r, -hairlut_pi), i = wrap(phi_i, -hairlut_pi);
-    return wrap_once(model->azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
+    return wrap_up(model->azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
 }
 
 /* density 0 where an argument is not a number or an azimuth is infinite */

@@ -16,7 +16,7 @@ static inline float hairlut_relative_azimuth(const hairlut_model *model, float p
 {
     const float r = hairlut_wrap(phi_r, -hairlut_pi);
     const float i = hairlut_wrap(phi_i, -hairlut_pi);
-    return hairlut_wrap_once(model->azimuth == HAIRLUT_AZIMUTH_SUM ? i + r : i - r, 0.0f);
+    return hairlut_wrap_up(model->azimuth == HAIRLUT_AZIMUTH_SUM ? i + r : i - r, 0.0f);
 }
 
 /* phi_i in [-pi, pi) from the azimuth in the table. */

@@ -10,6 +10,7 @@ static inline mask greater(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GT_
 static inline mask at_least(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
 static inline mask numbers(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_ORD_Q); }
 static inline mask both(mask a, mask b) { return _mm256_and_ps(a, b); }
+static inline int every(mask m) { return _mm256_movemask_ps(m) == 0xff; }
 static inline real choose(mask m, real a, real b) { return _mm256_blendv_ps(b, a, m); }
 static inline whole ichoose(mask m, whole a, whole b) { return _mm256_blendv_epi8(b, a, _mm256_castps_si256(m)); }
 

@@ -11,6 +11,7 @@ static inline mask greater(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CM
 static inline mask at_least(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_GE_OQ); }
 static inline mask numbers(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_ORD_Q); }
 static inline mask both(mask a, mask b) { return (mask)(a & b); }
+static inline int every(mask m) { return m == 0xff; }
 static inline real choose(mask m, real a, real b) { return _mm256_mask_blend_ps(m, b, a); }
 static inline whole ichoose(mask m, whole a, whole b) { return _mm256_mask_blend_epi32(m, b, a); }
 

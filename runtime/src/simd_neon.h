@@ -21,6 +21,7 @@ static inline real magnitude(real a) { return vabsq_f32(a); }
 static inline mask greater(real a, real b) { return vcgtq_f32(a, b); }
 static inline mask at_least(real a, real b) { return vcgeq_f32(a, b); }
 static inline mask both(mask a, mask b) { return vandq_u32(a, b); }
+static inline int every(mask m) { return vminvq_u32(m) != 0; }
 static inline mask numbers(real a, real b) { return both(vceqq_f32(a, a), vceqq_f32(b, b)); }
 static inline real choose(mask m, real a, real b) { return vbslq_f32(m, a, b); }
 static inline real smaller(real a, real b) { return choose(greater(b, a), a, b); }

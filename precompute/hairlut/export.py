@@ -129,8 +129,11 @@ def _literal(x: float) -> str:
 
 
 def _step(width: int) -> int:
-    """Cells of a block of the search."""
-    return next(step for step in (4, 8, 16, 32, 64, 128, 256) if width - 1 <= (PIVOTS + 1) * step)
+    """Cells of a block of the search: 9 blocks of 8 where those do, else 17 of a power of two."""
+    few = PIVOTS // 2
+    if width - 1 <= (few + 1) * few:
+        return few
+    return next(step for step in (16, 32, 64, 128, 256) if width - 1 <= (PIVOTS + 1) * step)
 
 
 def _rows(table: Table) -> np.ndarray:

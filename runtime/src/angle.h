@@ -51,7 +51,7 @@ static inline float hairlut_wrap_up(float phi, float low)
 {
     const float high = low + hairlut_two_pi, n = 0.5f - copysignf(0.5f, phi - low);
     const float r = (phi + n * hairlut_two_pi_high) + n * hairlut_two_pi_low;
-    return r < high ? r : low;
+    return r > low && r < high ? r : low;
 }
 
 /* cos(theta) for |theta| <= pi/2 as the sine of the angle to the pole: 2.5 ulp up to the pole itself, where theta's

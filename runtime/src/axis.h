@@ -17,7 +17,7 @@
 #include "quad.h"
 
 #ifndef HAIRLUT_COUNT
-#define HAIRLUT_COUNT hairlut_count /* a kernel with wider vectors defines its own, with n up to HAIRLUT_PIVOTS */
+#define HAIRLUT_COUNT hairlut_count /* a kernel with wider vectors defines its own, for n of 8 and 16 */
 #endif
 
 /* gcc -O2 would call the longer functions and pass what they return through memory: a density takes 1.6 times as long. */
@@ -134,8 +134,7 @@ static inline float hairlut_blend(float a, float b, float t)
     return a + t * (b - a);
 }
 
-/* How many of the n blended texels a[0], a[1], ... are at most x; n is a multiple of four. A count has no branch that depends
- * on x. */
+/* How many of the n blended texels a[0], a[1], ... are at most x; n is 8 or 16. A count has no branch that depends on x. */
 static inline int hairlut_count(const float *a, int stride, float t, float x, int n)
 {
     hairlut_tally tally = hairlut_tally_zero();
@@ -160,11 +159,16 @@ static inline int hairlut_halve(const float *a, int stride, float t, float x, in
 HAIRLUT_INLINE int hairlut_axis_find(const hairlut_axis *axis, hairlut_row row, float x)
 {
     const int stride = axis->stride, step = axis->step, last = axis->columns - 2;
-    const int few = step < HAIRLUT_PIVOTS ? step : HAIRLUT_PIVOTS;
-    const float *texels = axis->rows + (ptrdiff_t)row.j * stride;
-    int first = step * HAIRLUT_COUNT(texels - HAIRLUT_PIVOTS, stride, row.t, x, HAIRLUT_PIVOTS);
-    first += hairlut_halve(texels + first, stride, row.t, x, step);
-    const int count = HAIRLUT_COUNT(texels + first, stride, row.t, x, few); /* also of the first itself */
+    const float *texels = axis->rows + (ptrdiff_t)row.j * stride, *pivots = texels - HAIRLUT_PIVOTS;
+    int first, count; /* of a block; of its texels up to x, the first itself included */
+    if (HAIRLUT_IS_SMALL(axis->columns)) {
+        first = step * HAIRLUT_COUNT(pivots, stride, row.t, x, HAIRLUT_PIVOTS / 2);
+        count = HAIRLUT_COUNT(texels + first, stride, row.t, x, HAIRLUT_PIVOTS / 2);
+    } else {
+        first = step * HAIRLUT_COUNT(pivots, stride, row.t, x, HAIRLUT_PIVOTS);
+        first += hairlut_halve(texels + first, stride, row.t, x, step);
+        count = HAIRLUT_COUNT(texels + first, stride, row.t, x, HAIRLUT_PIVOTS);
+    }
     const int i = first + (count > 1 ? count - 1 : 0);
     return i < last ? i : last; /* x is the domain's end */
 }

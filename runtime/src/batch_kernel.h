@@ -6,7 +6,7 @@
  *   imul(a, b)      of integers in [0, 2^15)
  *   every(m)        whether all lanes are true
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
- *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n <= 16, 16 floats are read
+ *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, because a single one would wait for the square roots,
@@ -126,13 +126,11 @@ static inline real draw(const hairlut_axis *axis, const places *p, size_t s, rea
     return x;
 }
 
-/* hairlut_axis_find up to the pivots: the first cell of the block, and the offset of its first texel */
-static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q)
+/* hairlut_axis_find up to the pivots, n of them: the first cell of the block, and the offset of its first texel */
+static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int pivots)
 {
-    for (size_t k = 0; k < n; ++k) {
-        const float *pivots = axis->rows + q->at[k] - HAIRLUT_PIVOTS;
-        q->cell[k] = HAIRLUT_COUNT(pivots, axis->stride, q->t[k], q->x[k], HAIRLUT_PIVOTS);
-    }
+    for (size_t k = 0; k < n; ++k)
+        q->cell[k] = HAIRLUT_COUNT(axis->rows + q->at[k] - HAIRLUT_PIVOTS, axis->stride, q->t[k], q->x[k], pivots);
     for (size_t s = 0; s < n; s += LANES) {
         const whole first = imul(iload(q->cell + s), iall(axis->step));
         istore(q->cell + s, first);
@@ -140,43 +138,25 @@ static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q)
     }
 }
 
-/* hairlut_axis_find from the first cell of what is left of a block and how many of its texels are at most x */
-static inline whole last_of(const hairlut_axis *axis, whole first, whole count)
+/* hairlut_halve */
+static inline void halve_blocks(const hairlut_axis *axis, size_t n, queries *q)
 {
-    const whole cell = iadd(first, ilarger(isub(count, iall(1)), iall(0)));
-    return ismaller(cell, iall(axis->columns - 2));
-}
-
-/* The rest of hairlut_axis_find, one query at a time. */
-static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q)
-{
-    const int few = axis->step < HAIRLUT_PIVOTS ? axis->step : HAIRLUT_PIVOTS;
-    int count[BLOCK];
     for (size_t k = 0; axis->step > HAIRLUT_PIVOTS && k < n; ++k) {
         const int halved = hairlut_halve(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], axis->step);
         q->cell[k] += halved;
         q->at[k] += halved;
     }
-    for (size_t k = 0; k < n; ++k)
-        count[k] = HAIRLUT_COUNT(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], few);
-    for (size_t s = 0; s < n; s += LANES)
-        istore(q->cell + s, last_of(axis, iload(q->cell + s), iload(count + s)));
 }
 
-/* The same for blocks of four cells, whose texels one load brings. */
-static inline void find_in_small_blocks(const hairlut_axis *axis, size_t n, queries *q)
+/* The rest of hairlut_axis_find, among as many texels. */
+static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q, int texels)
 {
+    int count[BLOCK];
+    for (size_t k = 0; k < n; ++k)
+        count[k] = HAIRLUT_COUNT(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], texels);
     for (size_t s = 0; s < n; s += LANES) {
-        const real t = load(q->t + s), x = load(q->x + s);
-        whole count = iall(0);
-        real a[4], b[4];
-        gather4(axis->rows, q->at + s, a);
-        gather4(axis->rows + axis->stride, q->at + s, b);
-        for (int k = 0; k < 4; ++k) {
-            const mask below = at_least(x, add(a[k], mul(t, sub(b[k], a[k]))));
-            count = ichoose(below, iadd(count, iall(1)), count);
-        }
-        istore(q->cell + s, last_of(axis, iload(q->cell + s), count));
+        const whole more = ilarger(isub(iload(count + s), iall(1)), iall(0));
+        istore(q->cell + s, ismaller(iadd(iload(q->cell + s), more), iall(axis->columns - 2)));
     }
 }
 
@@ -205,11 +185,14 @@ static inline void load_found(const hairlut_axis *axis, size_t n, const queries 
 
 static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q, block_of_cells *found)
 {
-    find_blocks(axis, n, q);
-    if (axis->step == 4)
-        find_in_small_blocks(axis, n, q);
-    else
-        find_in_blocks(axis, n, q);
+    if (HAIRLUT_IS_SMALL(axis->columns)) {
+        find_blocks(axis, n, q, HAIRLUT_PIVOTS / 2);
+        find_in_blocks(axis, n, q, HAIRLUT_PIVOTS / 2);
+    } else {
+        find_blocks(axis, n, q, HAIRLUT_PIVOTS);
+        halve_blocks(axis, n, q);
+        find_in_blocks(axis, n, q, HAIRLUT_PIVOTS);
+    }
     turn_to_nearer_end(axis, n, q);
     load_found(axis, n, q, found);
 }
@@ -286,7 +269,7 @@ static inline real wrap_up(real phi, float low)
 {
     const real turned = add(add(phi, all(hairlut_two_pi_high)), all(hairlut_two_pi_low));
     const real r = choose(greater(all(low), phi), turned, phi);
-    return choose(greater(all(low + hairlut_two_pi), r), r, all(low));
+    return choose(both(greater(r, all(low)), greater(all(low + hairlut_two_pi), r)), r, all(low));
 }
 
 /* hairlut_cos */

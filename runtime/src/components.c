@@ -11,9 +11,10 @@ static double total_weight(const hairlut_component *components, int n)
 {
     double total = 0.0;
     for (int k = 0; k < n; ++k) {
-        if (!hairlut_is_finite(components[k].weight))
+        const float weight = weight_of(&components[k]);
+        if (!hairlut_is_finite(components[k].weight) || (weight > 0.0f && !hairlut_is_finite(components[k].turn)))
             return 0.0;
-        total += weight_of(&components[k]);
+        total += weight;
     }
     return total;
 }
@@ -35,16 +36,19 @@ static int choose(const hairlut_component *components, int n, double total, floa
 static hairlut_sample sample_one(const hairlut_component *component, float theta_r, float phi_r, float u_theta,
                                  float u_phi)
 {
-    return component->lobe == HAIRLUT_LOBE_MULTIPLE
-               ? hairlut_sample_multiple(component->model, theta_r, phi_r, u_theta, u_phi)
-               : hairlut_sample_direct(component->model, theta_r, phi_r, u_theta, u_phi);
+    hairlut_sample s = component->lobe == HAIRLUT_LOBE_MULTIPLE
+                           ? hairlut_sample_multiple(component->model, theta_r, phi_r, u_theta, u_phi)
+                           : hairlut_sample_direct(component->model, theta_r, phi_r, u_theta, u_phi);
+    s.phi_i = hairlut_wrap(s.phi_i + component->turn, -hairlut_pi);
+    return s;
 }
 
 static float pdf_one(const hairlut_component *component, float theta_r, float phi_r, float theta_i, float phi_i)
 {
+    const float phi = phi_i - component->turn;
     return component->lobe == HAIRLUT_LOBE_MULTIPLE
-               ? hairlut_pdf_multiple(component->model, theta_r, phi_r, theta_i, phi_i)
-               : hairlut_pdf_direct(component->model, theta_r, phi_r, theta_i, phi_i);
+               ? hairlut_pdf_multiple(component->model, theta_r, phi_r, theta_i, phi)
+               : hairlut_pdf_direct(component->model, theta_r, phi_r, theta_i, phi);
 }
 
 /* The density of the mixture at (theta_i, phi_i); component `drawn`, if there is one, has the density that is known. */

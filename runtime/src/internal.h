@@ -15,11 +15,12 @@
 enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
 #define HAIRLUT_NO_TEXEL FLT_MAX
 #define HAIRLUT_WHOLE(n, size) (((n) + (size) - 1) / (size) * (size))
-/* The least power of two, from 4 on, of which 17 blocks hold all cells; a side is at most 4096. */
+/* The search needs only half of the pivots where 9 blocks of 8 hold all cells. Else a block is the least power of two, from
+ * 16 on, of which 17 blocks hold them; a side is at most 4096. */
+#define HAIRLUT_IS_SMALL(columns) ((columns) - 1 <= (HAIRLUT_PIVOTS / 2 + 1) * (HAIRLUT_PIVOTS / 2))
 #define HAIRLUT_FITS(columns, step) ((columns) - 1 <= (HAIRLUT_PIVOTS + 1) * (step))
 #define HAIRLUT_STEP(columns)                                                                                         \
-    (HAIRLUT_FITS(columns, 4)     ? 4                                                                                 \
-     : HAIRLUT_FITS(columns, 8)   ? 8                                                                                 \
+    (HAIRLUT_IS_SMALL(columns)    ? HAIRLUT_PIVOTS / 2                                                                \
      : HAIRLUT_FITS(columns, 16)  ? 16                                                                                \
      : HAIRLUT_FITS(columns, 32)  ? 32                                                                                \
      : HAIRLUT_FITS(columns, 64)  ? 64                                                                                \

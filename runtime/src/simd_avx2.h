@@ -24,8 +24,7 @@ static inline unsigned below(const float *a, int stride, float t, float x)
 
 static inline int count_at_most(const float *a, int stride, float t, float x, int n)
 {
-    const unsigned bits = below(a, stride, t, x) | below(a + 8, stride, t, x) << 8;
-    return _mm_popcnt_u32(_bzhi_u32(bits, (unsigned)n));
+    return _mm_popcnt_u32(below(a, stride, t, x)) + (n > 8 ? _mm_popcnt_u32(below(a + 8, stride, t, x)) : 0);
 }
 
 #endif

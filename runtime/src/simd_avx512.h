@@ -16,12 +16,22 @@ static inline real choose(mask m, real a, real b) { return _mm256_mask_blend_ps(
 static inline whole ichoose(mask m, whole a, whole b) { return _mm256_mask_blend_epi32(m, b, a); }
 
 #define HAIRLUT_COUNT count_at_most
-static inline int count_at_most(const float *a, int stride, float t, float x, int n)
+static inline unsigned below8(const float *a, int stride, float t, float x)
+{
+    const real low = load(a), blend = add(low, mul(all(t), sub(load(a + stride), low)));
+    return _mm256_cmp_ps_mask(blend, all(x), _CMP_LE_OQ);
+}
+
+static inline unsigned below16(const float *a, int stride, float t, float x)
 {
     const __m512 low = _mm512_loadu_ps(a), high = _mm512_loadu_ps(a + stride);
     const __m512 blend = _mm512_add_ps(low, _mm512_mul_ps(_mm512_set1_ps(t), _mm512_sub_ps(high, low)));
-    const unsigned below = _mm512_cmp_ps_mask(blend, _mm512_set1_ps(x), _CMP_LE_OQ);
-    return _mm_popcnt_u32(_bzhi_u32(below, (unsigned)n));
+    return _mm512_cmp_ps_mask(blend, _mm512_set1_ps(x), _CMP_LE_OQ);
+}
+
+static inline int count_at_most(const float *a, int stride, float t, float x, int n)
+{
+    return _mm_popcnt_u32(n > 8 ? below16(a, stride, t, x) : below8(a, stride, t, x));
 }
 
 #endif

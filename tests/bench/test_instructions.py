@@ -16,13 +16,13 @@ TOLERANCE = 0.15
 PINNED = {
     "sample_direct": 242,
     "sample_multiple": 157,
-    "pdf_direct": 524,
-    "pdf_multiple": 257,
-    "sample_direct_n": 39,
+    "pdf_direct": 439,
+    "pdf_multiple": 215,
+    "sample_direct_n": 36,
     "sample_multiple_n": 21,
-    "pdf_direct_n": 136,
-    "pdf_multiple_n": 66,
-    "sample_mixture_n": 343,
+    "pdf_direct_n": 122,
+    "pdf_multiple_n": 61,
+    "sample_mixture_n": 322,
 }
 
 

@@ -47,14 +47,16 @@ class Cubics:
         rest = u - u0
         low, high = np.zeros(rest.shape), np.ones(rest.shape)
         s = np.clip(rest / np.maximum(a + b + c, 1e-300), 0.0, 1.0)
+        settled = np.zeros(rest.shape, bool)
         for _ in range(STEPS):
             excess = s * (a + s * (b + s * c)) - rest
             low, high = np.where(excess <= 0, s, low), np.where(excess >= 0, s, high)
             with np.errstate(divide="ignore", invalid="ignore"):
                 step = s - excess / (a + s * (2 * b + 3 * c * s))
             step = np.where((step >= low) & (step <= high), step, (low + high) / 2)
-            moved, s = abs(step - s).max(), step
-            if moved <= SETTLED:
+            s, moved = np.where(settled, s, step), abs(step - s)
+            settled |= moved <= SETTLED  # each by itself, whatever others are looked for with it
+            if settled.all():
                 break
         return x0 + d * s
 

@@ -6,7 +6,7 @@ angles are in radians.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -26,7 +26,8 @@ Breakpoints = tuple[float, ...] | Callable[[Array], Array]
 class Lobe:
     """One density to be tabulated.
 
-    model, name     "printed", "direct_theta": the table goes to <model>/<name>.exr
+    model, name     "printed", "direct_theta": the table goes to <model>/<name>.exr; lobes that differ only
+                    in their model are equal
     angle           what x is: "theta_i" or "phi"
     azimuth         what phi is: "sum" (phi_i + phi_r), "difference" (phi_i - phi_r); "none" for theta_i
     domain          (low, high) of x
@@ -41,7 +42,7 @@ class Lobe:
     exact           exact(theta_r (R,)) -> what exact.Exact is, if the lobe knows its own integral
     """
 
-    model: str
+    model: str = field(compare=False)
     name: str
     angle: str
     azimuth: str

@@ -34,6 +34,10 @@ OUTER = 2.0**-24
 
 _nodes, _weights = np.polynomial.legendre.leggauss(ORDER)
 NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
+LOBATTO = (
+    1 + np.array([-1, -np.sqrt(3 / 7), 0, np.sqrt(3 / 7), 1])
+) / 2  # where weights are largest: at ends
+LOBATTO_WEIGHTS = np.array([9, 49, 64, 49, 9]) / 180
 ENDS = np.array([0.0, 1.0])
 # What ORDER points, weighted, give as the coefficients of the two highest Legendre polynomials that they
 # resolve.
@@ -140,6 +144,20 @@ def measure(
     else:
         quantile = inner = np.full(len(variance), np.nan)
     return Errors(exact.theta_r[at], variance, weight, heavy, variation, lost, quantile, inner)
+
+
+def estimate(table: Table, lobe: Lobe, exact: Exact, at: Array) -> tuple[float, float]:
+    """(V, largest weight) at the inclinations numbered `at`. Where the knots of the exact lobe are known, from
+    five places in each panel: V off by up to 0.1 % above 1e-3, 1.5 % above 1e-4, 15 % below; weights by 7 %.
+    """
+    if not exact.knots.shape[1]:
+        errors = measure(table, lobe, quantiles=False, exact=exact, at=at)
+        return errors.relative_variance, errors.largest_weight
+    read = cells(table, exact.theta_r[at])
+    n, i, low, size = _panels(read, exact.knots[at])
+    w, du = _weights(read, exact, at, n, i, low + size * LOBATTO[:, None])
+    variance = np.bincount(n, LOBATTO_WEIGHTS @ (du * (w - 1) ** 2) * size, len(at))
+    return float(variance.max()), float(w.max())
 
 
 def flat_cells(texels: Array) -> int:

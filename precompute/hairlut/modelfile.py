@@ -39,6 +39,7 @@ import re
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
@@ -55,6 +56,8 @@ from .tabulated import TabulatedDensity
 LOBE_NAMES = ("direct_theta", "direct_phi", "multiple_theta")
 AZIMUTHS = ("difference", "sum")
 SUFFIXES = (".py", ".toml", ".npz")
+
+KEPT = 16  # tabulated lobes: more than lie between two uses of the same one in a family
 
 _SPACE = {
     "direct_theta": {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)},
@@ -104,7 +107,7 @@ def density(
 
 def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
     """A lobe given as masses of cells (tabulated.TabulatedDensity); the edges must span the domain."""
-    table = TabulatedDensity(edges, theta_r, mass, name)
+    table = _of_masses(name, *(_as_bytes(values) for values in (edges, theta_r, mass)))
     low, high = _SPACE.get(name, _space(name))["domain"]
     if abs(table.edges[0] - low) > 1e-9 or abs(table.edges[-1] - high) > 1e-9:
         raise HairlutError(
@@ -114,6 +117,17 @@ def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
     text = f"{mass.shape[1]} measured cells at {len(table.theta_r)} theta_r, quantiles blended between them"
     lobe = density(name, log_density=table, formula=formula or text, breakpoints=table.breakpoints)
     return replace(lobe, own_height=table.own_height, exact=table.exact)
+
+
+@lru_cache(maxsize=KEPT)
+def _of_masses(name: str, *arrays: tuple[tuple[int, ...], bytes]) -> TabulatedDensity:
+    """The same object for the same numbers: lobes of it are equal, and a family's are baked once."""
+    return TabulatedDensity(*(np.frombuffer(data).reshape(shape) for shape, data in arrays), name)
+
+
+def _as_bytes(values) -> tuple[tuple[int, ...], bytes]:
+    values = np.asarray(values, float)
+    return values.shape, values.tobytes()
 
 
 def _function(value) -> Callable:

@@ -19,8 +19,8 @@ import numpy as np
 from .errors import HairlutError
 from .exact import Exact, exact_at
 from .interpolant import Cell
-from .lobes import Array, Lobe
-from .measure import BETWEEN, Errors, inclinations, measure, narrowest_cell
+from .lobes import Lobe
+from .measure import BETWEEN, Errors, estimate, inclinations, measure, narrowest_cell
 from .table import Table, check_size, row_angles, tabulate
 from .warp import Warp
 
@@ -125,18 +125,16 @@ def _lightest(tables: dict[int, Table], lobe: Lobe, exact: Exact) -> int:
     searched = np.arange(0, len(exact.theta_r), (BETWEEN + 1) // (SEARCHED_BETWEEN + 1))
     few = searched[::FEW]
 
-    def errors(exponent: int, at: Array) -> Errors:
-        return measure(tables[exponent], lobe, quantiles=False, exact=exact, at=at)
-
-    bound = {e: errors(e, few).relative_variance for e in tables}
-    variance, weight = {}, {}
+    bound = {e: estimate(table, lobe, exact, few)[0] for e, table in tables.items()}
+    found: dict[int, tuple[float, float]] = {}
+    least = np.inf
     for e in sorted(bound, key=bound.get):
-        if variance and bound[e] > SLACK * min(variance.values()):
+        if bound[e] > SLACK * least:
             break
-        found = errors(e, searched)
-        variance[e], weight[e] = found.relative_variance, found.largest_weight
-    good = [e for e in variance if variance[e] <= SLACK * min(variance.values())]
-    return min(good, key=weight.get)
+        found[e] = estimate(tables[e], lobe, exact, searched)
+        least = min(least, found[e][0])
+    good = [e for e, (variance, _) in found.items() if variance <= SLACK * least]
+    return min(good, key=lambda e: found[e][1])
 
 
 class _Trials:

@@ -23,6 +23,7 @@ FLOOR = 1e-4
 MERGE = 1e-4, 1e-8
 """Knots of a blended row that are closer than this part of the domain, or of the mass, are one."""
 
+SAME = 1e-9  # of the distance of two rows: theta_r that differ only by rounding are one
 
 MAX_HEIGHT = 256
 
@@ -83,17 +84,18 @@ class TabulatedDensity:
 
     def _blended(self, theta_r: np.ndarray) -> Cubics:
         at = np.interp(theta_r, self.theta_r, np.arange(len(self.theta_r)))
+        at = np.where(abs(at - np.rint(at)) < SAME, np.rint(at), at)
         j = at.astype(int)
         t = (at - j)[:, None]
         pairs, which = np.unique(j, return_inverse=True)
-        u, *blended = (part[which] for part in self._pairs(pairs))
-        low, high, dense_low, dense_high = blended
+        u, low, high, dense_low, dense_high = (part[which] for part in self._pairs(pairs))
         with np.errstate(divide="ignore", invalid="ignore"):  # a density of zero at an edge
             slope = 1 / ((1 - t) / dense_low + t / dense_high)
         x = (1 - t) * low + t * high
         x[:, 0], x[:, -1] = self.edges[0], self.edges[-1]
-        kept = np.diff(x) > MERGE[0] * (self.edges[-1] - self.edges[0])
-        x, u, slope = _only(np.pad(kept, ((0, 0), (0, 1)), constant_values=True), x, u, slope)
+        kept = np.diff(x, append=np.inf) > MERGE[0] * (self.edges[-1] - self.edges[0])
+        kept[:, 0] = True
+        x, u, slope = _only(kept, x, u, slope)
         given = np.broadcast_to(self.edges, (len(j), self.edges.size)), self._own.u[j], self._slope[j]
         own = (_widened(part, x) for part in given)
         return Cubics(*(np.where(t > 0, a, b) for a, b in zip((x, u, slope), own, strict=True)))

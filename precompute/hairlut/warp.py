@@ -74,7 +74,10 @@ class Warp:
     def slope(self, c: Array, width: int) -> Array:
         """dm/dc at the folded column c, which is du/dcolumn on both halves of the axis."""
         f0, k = self.scale(width)
-        return np.full_like(c, k, dtype=float) if self.name == "uniform" else 4 * k * (f0 + k * c) ** 3
+        if self.name == "uniform":
+            return np.full_like(c, k, dtype=float)
+        y = f0 + k * c
+        return 4 * k * y * y * y
 
     def du(self, i: Array, f: Array, width: int) -> Array:
         """du/dcolumn at the fractions f of the cells i, broadcast against each other."""

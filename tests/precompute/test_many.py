@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hairlut import batch_bake, exr, manifest, modelfile
+from hairlut import batch_bake, cli, exr, manifest, modelfile, size
 from hairlut.errors import HairlutError
 
 HAIR = """
@@ -77,6 +77,85 @@ def test_textures_do_not_depend_on_how_they_were_baked(hairs, tmp_path):
     assert len(files) == 8
     for file in files:
         assert (tmp_path / "alone" / file).read_bytes() == (tmp_path / "together" / file).read_bytes()
+
+
+def test_a_process_that_ends_fails_its_model_alone(hairs, tmp_path):
+    (hairs / "ends.py").write_text("import os\nos._exit(7)\n")
+    out = tmp_path / "out"
+    done = hairlut("bake", "--model", hairs, "--size", "16x8", "--out", out, "--jobs", "1")
+    assert done.returncode == 1
+    assert "3 models: 2 baked, 0 up to date, 1 failed" in done.stdout
+    assert "no output, exit code 7" in done.stderr
+
+
+def test_the_code_of_one_model_changes_no_other(hairs, tmp_path):
+    spoils = "import hairlut.size\nhairlut.size.EXPONENTS = ()\n"
+    (hairs / "a_spoiler.py").write_text(spoils + HAIR.format(sigma=0.3))
+    done = hairlut("bake", "--model", hairs, "--size", "16x8", "--out", tmp_path / "out", "--jobs", "1")
+    assert "3 models: 2 baked, 0 up to date, 1 failed" in done.stdout
+    assert f"failed: {hairs / 'a_spoiler.py'}" in done.stdout
+
+
+def test_what_a_model_prints_is_no_answer(hairs, tmp_path):
+    prints = 'import os\nos.write(1, b"[0, 1]")\nprint("[2, 3]")\n'
+    (hairs / "loud.py").write_text(prints + HAIR.format(sigma=0.3))
+    assert "3 models: 3 baked" in bake(hairs, tmp_path / "out").stdout
+
+
+# ---- lobes that models share
+
+
+def masses(azimuth):
+    """The arrays of an npz file; all of these share their inclinations, and none has a multiple lobe."""
+    theta_r, theta_i = np.radians([-60.0, 0.0, 60.0]), np.linspace(-np.pi / 2, np.pi / 2, 25)
+    phi = np.linspace(0, 2 * np.pi, 25)
+    middle = (phi[1:] + phi[:-1]) / 2
+    lobes = {
+        "direct_theta": (theta_i, theta_r, np.exp(-8 * (theta_i[1:] + 0.9 * theta_r[:, None]) ** 2)),
+        "direct_phi": (phi, theta_r, np.exp(3 * np.cos(middle - azimuth - 0.3 * theta_r[:, None]))),
+        "multiple_theta": (theta_i[[0, -1]], np.zeros(1), np.ones((1, 1))),
+    }
+    arrays = zip(("edges", "theta_r", "mass"), zip(*lobes.values(), strict=True), strict=True)
+    return {f"{n}.{part}": a for part, each in arrays for n, a in zip(lobes, each, strict=True)}
+
+
+@pytest.fixture
+def relatives(tmp_path):
+    folder = tmp_path / "relatives"
+    folder.mkdir()
+    for k, azimuth in enumerate((2.0, 3.0, 4.0)):
+        np.savez(folder / f"lobe_{k}.npz", azimuth=np.array("difference"), **masses(azimuth))
+    return folder
+
+
+@pytest.mark.parametrize("options", [["--size", "24x19"], ["--tolerance", "1e-2"]], ids=" ".join)
+def test_shared_lobes_are_baked_as_if_each_model_were_alone(relatives, tmp_path, options):
+    """Byte for byte: alone, one after the other in one process, and shared out between two."""
+    for jobs in (1, 2):
+        command = ["bake", "--model", relatives, *options, "--jobs", jobs, "--out", tmp_path / f"{jobs}"]
+        assert hairlut(*command).returncode == 0
+    for source in sorted(relatives.iterdir()):
+        hairlut("bake", "--model", source, *options, "--out", tmp_path / "alone")
+    files = sorted(path.relative_to(tmp_path / "alone") for path in (tmp_path / "alone").rglob("*.*"))
+    assert len(files) == 12
+    for file in files:
+        alone = (tmp_path / "alone" / file).read_bytes()
+        assert (tmp_path / "1" / file).read_bytes() == alone
+        assert (tmp_path / "2" / file).read_bytes() == alone
+    assert exr.read(tmp_path / "1" / "lobe_2" / "direct_theta.exr")[0].model == "lobe_2"
+
+
+def test_each_lobe_that_models_share_is_baked_once(relatives, tmp_path, monkeypatch):
+    baked, original = [], size.table_of_size
+
+    def counted(lobe, *args):
+        baked.append(lobe.name)
+        return original(lobe, *args)
+
+    monkeypatch.setattr(size, "table_of_size", counted)
+    for source in sorted(relatives.iterdir()):
+        assert cli.main(["bake", "--model", str(source), "--size", "24x13", "--out", str(tmp_path)]) == cli.OK
+    assert sorted(baked) == ["direct_phi"] * 3 + ["direct_theta", "multiple_theta"]
 
 
 def test_two_files_of_one_name_are_refused(hairs):

@@ -4,6 +4,8 @@ import argparse
 import os
 import re
 import sys
+from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -204,12 +206,21 @@ def _jump(lobe: Lobe) -> str:
 
 def bake_one(lobe: Lobe, args: argparse.Namespace) -> size.Choice:
     """A table of the size and warp asked for, or chosen by measurement where none was."""
-    if args.warp:
-        table = bake_table(lobe, *args.size, args.warp, args.cell)
+    choice = _baked(lobe, args.size, args.warp, args.cell, args.tolerance, args.max_size)
+    return replace(choice, table=replace(choice.table, model=lobe.model))
+
+
+@lru_cache(maxsize=modelfile.KEPT)
+def _baked(
+    lobe: Lobe, shape: tuple[int, int] | None, warp: Warp | None, cell: Cell, tolerance: float, limit: int
+) -> size.Choice:
+    """The same choice for equal lobes, of whatever model."""
+    if warp:
+        table = bake_table(lobe, *shape, warp, cell)
         return size.Choice(table, measure(table, lobe), "size and warp as asked")
-    if args.size:
-        return size.table_of_size(lobe, *args.size, args.cell)
-    return size.smallest_table(lobe, args.tolerance, args.max_size, args.cell)
+    if shape:
+        return size.table_of_size(lobe, *shape, cell)
+    return size.smallest_table(lobe, tolerance, limit, cell)
 
 
 def write(out: Path, choice: size.Choice) -> None:

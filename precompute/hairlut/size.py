@@ -8,6 +8,10 @@ with half its rows); for each the lowest height is found by bisection, and the f
 The warp's e is measured too: a small e serves the tails and starves the end cells of floating-point steps.
 Only tables whose narrowest cell spans MIN_STEPS steps of a float are considered, and among the powers of two
 that meet the tolerance at the size found the largest is taken: its end cells are the widest.
+
+For a table of given size, V is judged for every e, as it rises and falls with e where a lobe has two peaks: a
+cell that spans the gap between them costs more or less as knots meet its ends. Of the e that are within SLACK
+of the least V the one whose largest weight f/q is least is taken, as a large weight is a firefly.
 """
 
 from collections.abc import Callable
@@ -34,7 +38,7 @@ PROBE_HEIGHT = 33  # rows on which a width alone is judged
 WIDEST = 2
 SEARCHED_BETWEEN = 1  # midway between rows is the worst place
 FEW = 7  # every so many inclinations are measured first; odd, so that rows and places between them take turns
-SLACK = 1.1  # an e is as good as a smaller one if its variance is within this factor
+SLACK = 1.1  # an e is as good as the best if its variance is within this factor
 
 
 class ToleranceError(HairlutError):
@@ -88,8 +92,7 @@ def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cel
 
 
 def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Choice:
-    """The table of a given size, with the e of least weights among those whose V is within SLACK of the
-    best."""
+    """The table of a given size; HairlutError where some cell is too narrow for float32 with every e."""
     check_size(width, height)
     exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, BETWEEN))
     tables = {e: _usable(lobe, exact, width, e, cell) for e in EXPONENTS}

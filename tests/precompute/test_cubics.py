@@ -75,6 +75,12 @@ def test_knots_that_crowd_at_an_end_leave_the_end_where_it_is():
     assert (ends == lobe.domain).all()
 
 
+def test_an_angle_that_rounding_moved_has_the_row_of_the_data(lobe):
+    own, moved = (lobe.exact(angles).knots for angles in (ROWS, np.nextafter(ROWS, 9)))
+    np.testing.assert_array_equal(own, moved)
+    assert len(np.unique(own[3])) == 37
+
+
 def test_rows_do_not_depend_on_each_other(lobe):
     whole = lobe.exact(BETWEEN).quantiles(np.linspace(0, 0.5, 33), np.zeros(33, bool))
     for j, angle in enumerate(BETWEEN):

@@ -147,8 +147,8 @@ def measure(
 
 
 def estimate(table: Table, lobe: Lobe, exact: Exact, at: Array) -> tuple[float, float]:
-    """(V, largest weight) at the inclinations numbered `at`. Where the exact lobe's knots are known, from five
-    places in each panel: V off by up to 0.1 % above 1e-3, 1.5 % above 1e-4, 15 % below; weights by 7 %."""
+    """(V, largest weight) at the inclinations numbered `at`. Where the exact lobe's knots are known, from
+    five places a panel: V off by up to 0.1 % above 1e-3, 1.5 % above 1e-4, 15 % below; weights by 7 %."""
     if not exact.knots.shape[1]:
         errors = measure(table, lobe, quantiles=False, exact=exact, at=at)
         return errors.relative_variance, errors.largest_weight

@@ -171,11 +171,12 @@ typedef struct hairlut_component {
     const hairlut_model *model; /* never NULL, unless weight is 0 or negative: then it is not read */
     hairlut_lobe lobe;
     float weight; /* in any unit: lobes are drawn in proportion to their weights. Negative counts as 0 */
+    float turn;   /* rad, any finite size: added to phi_i of what the lobe draws; it turns the lobe around the fibre */
 } hairlut_component;
 
 /* Draws from one of n lobes, chosen by u_lobe. The densities returned are the mixture's: the sum of weight * density
  * over the lobes, divided by the sum of the weights. The time grows with n. Where n <= 0, no weight is above 0, or one
- * is infinite or NaN, the density is 0. */
+ * is infinite or NaN, or the turn of a lobe with weight is, the density is 0. */
 HAIRLUT_API hairlut_sample hairlut_sample_components(const hairlut_component *components, int n, float theta_r,
                                                      float phi_r, float u_lobe, float u_theta, float u_phi);
 HAIRLUT_API float hairlut_pdf_components(const hairlut_component *components, int n, float theta_r, float phi_r,

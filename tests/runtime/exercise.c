@@ -58,17 +58,18 @@ static void check_batches(const hairlut_model *model, size_t n)
         REQUIRE(isfinite(out[2][i]) && isfinite(out[3][i]) && isfinite(out[4][i]));
 }
 
-/* Lobes of several models, with weights of every kind. */
-static void check_components(void)
+/* Lobes of several models, with weights of every kind, the first turned by any angle. */
+static void check_components(float turn)
 {
     const hairlut_model *a = hairlut_builtin("fitted"), *b = hairlut_builtin("printed");
     static const float weights[] = {0.0f, 1.0f, -1.0f, 1e-45f, 3e38f, INFINITY, NAN};
     enum { WEIGHTS = sizeof weights / sizeof *weights };
     for (int i = 0; i < WEIGHTS; ++i)
         for (int j = 0; j < WEIGHTS; ++j) {
-            const hairlut_component mixed[] = {{weights[i] > 0.0f ? a : NULL, HAIRLUT_LOBE_DIRECT, weights[i]},
-                                               {weights[j] > 0.0f ? b : NULL, HAIRLUT_LOBE_MULTIPLE, weights[j]}};
-            const int valid = isfinite(weights[i]) && isfinite(weights[j]) && (weights[i] > 0.0f || weights[j] > 0.0f);
+            const hairlut_component mixed[] = {{weights[i] > 0.0f ? a : NULL, HAIRLUT_LOBE_DIRECT, weights[i], turn},
+                                               {weights[j] > 0.0f ? b : NULL, HAIRLUT_LOBE_MULTIPLE, weights[j], 0.5f}};
+            const int valid = isfinite(weights[i]) && isfinite(weights[j]) && (weights[i] > 0.0f || weights[j] > 0.0f)
+                              && (isfinite(turn) || !(weights[i] > 0.0f));
             for (int n = -1; n <= 2; ++n) {
                 static const float u[] = {-1.0f, 0.0f, 0.5f, 1.0f, NAN};
                 for (int k = 0; k < 5; ++k) {
@@ -250,7 +251,9 @@ int main(int argc, char **argv)
     use(hairlut_builtin("fitted"));
     hairlut_free((hairlut_model *)hairlut_builtin("fitted"));
     check_frame();
-    check_components();
+    static const float turns[] = {0.0f, -2.0f, 1e6f, -3e38f, INFINITY, NAN};
+    for (size_t k = 0; k < sizeof turns / sizeof *turns; ++k)
+        check_components(turns[k]);
     check_creation();
     check_validation();
     check_loader_arguments();

@@ -45,6 +45,11 @@ class Distribution:
     samples: Array
 
     @property
+    def theta_middles(self) -> Array:
+        """(n,) middles of the cells of theta_i."""
+        return (self.theta_edges[1:] + self.theta_edges[:-1]) / 2
+
+    @property
     def even(self) -> Array:
         """(m,) share of the circle of each cell of phi."""
         return np.diff(self.phi_edges) / TWO_PI

@@ -12,7 +12,7 @@ azimuth is mirrored, phi becomes -phi.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -39,10 +39,14 @@ class OffsetData:
         """Whether the other half of the fibre is this one's mirror image."""
         return bool(self.offset[0] >= 0)
 
-    @property
-    def mass(self) -> Array:
-        """(N, J, n, m) masses of the cells, as Distribution.mass."""
-        return np.stack([d.mass for d in self.at])
+    def mass_at(self, j: int) -> Array:
+        """(N, n, m) masses of the cells for theta_r number j, as Distribution.mass."""
+        return np.stack([d.mass[j] for d in self.at])
+
+    def at_offsets(self, which) -> OffsetData:
+        """The data of some offsets, picked as by an index of NumPy."""
+        picked = np.arange(len(self.offset))[which]
+        return OffsetData(self.offset[picked], tuple(self.at[o] for o in picked), self.light[picked])
 
     @cached_property
     def share(self) -> Array:
@@ -93,3 +97,15 @@ def of_grids(offset, theta_r, theta_i, phi, value, per_steradian: bool = False) 
             raise HairlutError(f"offset {h:.4g}: {error}") from None
         light.append(mass.sum(axis=(1, 2)))
     return OffsetData(offset, tuple(at), np.array(light))
+
+
+def even_azimuth(data: OffsetData) -> OffsetData:
+    """The data in as many cells of the azimuth, all of one width."""
+    edges = data.at[0].phi_edges
+    even = np.linspace(edges[0], edges[-1], edges.size)
+    if np.allclose(edges, even, rtol=0, atol=1e-9):
+        return data
+    shared = np.minimum(edges[1:, None], even[1:]) - np.maximum(edges[:-1, None], even[:-1])
+    part = np.maximum(shared, 0) / np.diff(edges)[:, None]
+    at = tuple(replace(d, phi_edges=even, mass=d.mass @ part) for d in data.at)
+    return OffsetData(data.offset, at, data.light)

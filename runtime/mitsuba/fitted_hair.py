@@ -3,7 +3,7 @@
     .venv/bin/python runtime/mitsuba/fitted_hair.py [--draws N] --out luts/report/fit.json
 
 For each hair: evaluate the BSDF on a grid (theta_r, theta_i, phi, and the offset at which the fibre is hit).
-Fit and bake one model to its mean over the offset, and a family of models over the offset. Draw from the
+Fit and bake one model to its mean over the offset, and a family over the offset. Draw from the
 tables through the plugin: hairlut's C library proposes, the BSDF gives the value. The estimates are of the
 light that the fibre scatters towards a viewer, at a random offset, from an environment of constant and of
 contrasted radiance; a quadrature of the BSDF says what they should be.
@@ -18,12 +18,20 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 import numpy as np
 from hairscene import owndensity
-from hairscene.nearfield import REACH, contrasted, direction, evaluate, light, midpoints
+from hairscene.nearfield import (
+    REACH,
+    contrasted,
+    direction,
+    evaluate,
+    largest_weight,
+    light,
+    midpoints,
+)
 from hairscene.offsets import left
 from hairscene.scene import Hair, scene_dict, strand_points, write_strands
 
@@ -58,14 +66,15 @@ HAIRS = {
         "azimuthal_roughness": 0.8,
     },
 }
-IMAGE, STRANDS, SPP, BATCHES = (64, 48), 4000, 16, 24
+IMAGE, STRANDS, SPP, BATCHES = (64, 48), 4000, 16, 48
 VIEWERS = (2.5, 32.5, -57.5)  # between the rows of the grid
-SIZE, FAMILY_SIZE = "96x37", "64x37"  # rows every 5 degrees: the grid's are among them
+SIZE = "96x37"  # rows every 5 degrees: the grid's are among them
 THETA_R = np.radians(np.arange(-85.0, 86.0, 5.0))
 THETA_I, PHI = midpoints(-math.pi / 2, math.pi / 2, 64), midpoints(0, 2 * math.pi, 72)
 # The offset sin(gamma) is uniform over a fibre's width; even steps in gamma resolve its rims.
 GAMMA = np.linspace(0, math.pi / 2, 17)
 LIGHTS = ("constant", "contrasted")
+WEIGHED = ("family over offsets", "its own")
 OWN = {"half tables, half its own": 0.5, "its own": 1.0}  # share of the engine's own draws
 
 
@@ -84,23 +93,23 @@ def far_field(values: np.ndarray, gamma: np.ndarray = GAMMA) -> np.ndarray:
 def bake(found: Fit, name: str, folder: Path) -> Path:
     """Bakes the fit's masses; the model's directory."""
     masses = write_all(found, folder, name)[0]
-    _bake(masses, SIZE, folder)
+    _bake(masses, folder)
     return folder / masses.stem
 
 
 def bake_family(data: OffsetData, name: str, folder: Path) -> tuple[Path, float]:
-    """Fits and bakes a family, one model at a time; its directory, and the seconds that the fit took."""
+    """Fits and bakes a family; its directory, and the seconds that the fit took."""
     start = perf_counter()
     family = fit_family(data)
     seconds = perf_counter() - start
     write_family(family, folder / f"{name}_models")
     baked = folder / f"{name}_family"
-    _bake(folder / f"{name}_models", FAMILY_SIZE, baked)
+    _bake(folder / f"{name}_models", baked)
     return baked, seconds
 
 
-def _bake(model: Path, size: str, out: Path) -> None:
-    if cli.main(["bake", "--model", str(model), "--size", size, "--jobs", "1", "--out", str(out)]):
+def _bake(model: Path, out: Path) -> None:
+    if cli.main(["bake", "--model", str(model), "--size", SIZE, "--jobs", "1", "--out", str(out)]):
         raise RuntimeError(f"{model} does not bake")
 
 
@@ -215,6 +224,8 @@ def towards(mi: Any, viewer: float, hair: dict, kinds: dict[str, dict], draws: i
         seed = [k, list(HAIRS.values()).index(hair), round(viewer * 2) % 720]
         drawn = draw(mi, mi.load_dict(bsdf), theta_r, draws, seed)
         row[kind] = {**statistics(drawn.estimates()), "seconds": drawn.seconds}
+        if kind in WEIGHED:
+            row[kind]["largest_weight"] = largest_weight(mi, mi.load_dict(bsdf), theta_r)
         if kind in OWN:
             row[kind]["atom"] = float(owndensity.is_atom(drawn.wo).mean())
             row[kind]["corrected"] = statistics(corrected(mi, drawn, hair, theta_r, OWN[kind]).estimates())
@@ -224,24 +235,47 @@ def towards(mi: Any, viewer: float, hair: dict, kinds: dict[str, dict], draws: i
 def render(mi: Any, kinds: dict[str, dict], strands: Path) -> dict:
     """One scattering found by BSDF sampling alone, sky and lamps: the image's mean, its standard error, the
     mean variance of a pixel at one sample relative to the square of the image's mean, its own standard error
-    (jackknife over the batches), and the seconds that all batches took."""
-    report = {}
-    for kind, bsdf in kinds.items():
-        integrator = {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1}
-        scene = mi.load_dict({**scene_dict(mi, strands, bsdf, IMAGE, True), "integrator": integrator})
-        start = perf_counter()
-        images = np.array([np.array(mi.render(scene, spp=SPP, seed=k)).mean(axis=2) for k in range(BATCHES)])
-        seconds = perf_counter() - start
-        means = images.mean(axis=(1, 2))
-        others = np.array([relative_variance(np.delete(images, k, axis=0)) for k in range(BATCHES)])
-        report[kind] = {
-            "mean": float(means.mean()),
-            "standard_error": float(means.std(ddof=1) / np.sqrt(BATCHES)),
-            "relative_variance": relative_variance(images),
-            "variance_error": float(np.sqrt((BATCHES - 1) * others.var())),
-            "seconds": seconds,
+    (jackknife over the batches), and the time of a batch relative to that of the BSDF's own sampler: median,
+    quartiles, and the standard error of a mean. The samplers take turns, so that a busy machine slows all
+    alike; time is processor time of all threads."""
+    integrator = {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1}
+    scenes = {
+        kind: mi.load_dict({**scene_dict(mi, strands, bsdf, IMAGE, True), "integrator": integrator})
+        for kind, bsdf in kinds.items()
+    }
+    images, seconds = ({kind: [] for kind in kinds} for _ in range(2))
+    for batch in range(BATCHES):
+        for kind, scene in scenes.items():
+            start = process_time()
+            images[kind].append(np.array(mi.render(scene, spp=SPP, seed=batch)).mean(axis=2))
+            seconds[kind].append(process_time() - start)
+    return {
+        kind: {
+            **image_statistics(np.array(images[kind])),
+            **time_statistics(np.array(seconds[kind]) / seconds["its own"]),
         }
-    return report
+        for kind in kinds
+    }
+
+
+def image_statistics(images: np.ndarray) -> dict:
+    means = images.mean(axis=(1, 2))
+    others = np.array([relative_variance(np.delete(images, k, axis=0)) for k in range(BATCHES)])
+    return {
+        "mean": float(means.mean()),
+        "standard_error": float(means.std(ddof=1) / np.sqrt(BATCHES)),
+        "relative_variance": relative_variance(images),
+        "variance_error": float(np.sqrt((BATCHES - 1) * others.var())),
+    }
+
+
+def time_statistics(ratios: np.ndarray) -> dict:
+    low, middle, high = np.quantile(ratios, (0.25, 0.5, 0.75))
+    return {
+        "time": float(middle),
+        "time_quartiles": [float(low), float(high)],
+        "time_error": float(ratios.std(ddof=1) / np.sqrt(BATCHES)),
+    }
 
 
 def relative_variance(images: np.ndarray) -> float:

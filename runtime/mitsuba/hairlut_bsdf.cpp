@@ -84,15 +84,18 @@ public:
             bs.sampled_type = m_sampled_type;
             if (m_nested_weight >= 1.f || !(bs.pdf > 0.f))
                 return { bs, weight };
-        } else {
-            bs.wo = propose(si, (sample1 - m_nested_weight) / (1.f - m_nested_weight), sample2);
-            bs.eta = 1.f;
-            bs.sampled_type = m_sampled_type;
-            bs.sampled_component = 0;
+            auto [value, density] = eval_pdf(ctx, si, bs.wo, active);
+            bs.pdf = density;
+            return { bs, density > 0.f ? value / density : Spectrum(0.f) };
         }
-        auto [value, density] = eval_pdf(ctx, si, bs.wo, active);
-        bs.pdf = density;
-        return { bs, density > 0.f ? value / density : Spectrum(0.f) };
+        const Proposal drawn = propose(si, (sample1 - m_nested_weight) / (1.f - m_nested_weight), sample2);
+        bs.wo = drawn.wo;
+        bs.eta = 1.f;
+        bs.sampled_type = m_sampled_type;
+        bs.sampled_component = 0;
+        auto [value, nested_pdf] = eval_nested(ctx, si, bs.wo, active);
+        bs.pdf = mix(nested_pdf, drawn.pdf);
+        return { bs, bs.pdf > 0.f ? value / bs.pdf : Spectrum(0.f) };
     }
 
     Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
@@ -108,11 +111,8 @@ public:
     std::pair<Spectrum, Float> eval_pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
                                         Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
-        if (m_nested_weight > 0.f) {
-            auto [value, density] = m_nested->eval_pdf(ctx, si, wo, active);
-            return { value, mix(density, si, wo) };
-        }
-        return { m_nested->eval(ctx, si, wo, active), mix(0.f, si, wo) };
+        auto [value, nested_pdf] = eval_nested(ctx, si, wo, active);
+        return { value, mix(nested_pdf, si, wo) };
     }
 
     Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
@@ -162,17 +162,24 @@ private:
         m_family = std::make_unique<HairlutFamily>(m_name);
     }
 
+    struct Proposal {
+        Vector3f wo;
+        Float pdf; // per steradian
+    };
+
     /// A direction from the tables, or from the whole sphere.
-    Vector3f propose(const SurfaceInteraction3f &si, Float u_lobe, const Point2f &u) const {
-        if (m_uniform)
-            return warp::square_to_uniform_sphere(u);
+    Proposal propose(const SurfaceInteraction3f &si, Float u_lobe, const Point2f &u) const {
+        if (m_uniform) {
+            const Vector3f wo = warp::square_to_uniform_sphere(u);
+            return { wo, warp::square_to_uniform_sphere_pdf(wo) };
+        }
         const Angles r = angles_of(si.wi);
         const hairlut_sample s =
             m_family ? m_family->sample(r.theta, r.phi, u_lobe, u.x(), u.y())
                      : hairlut_sample_mixture(m_tables->get(), m_direct_weight, r.theta, r.phi, u_lobe, u.x(), u.y());
         float wo[3];
         hairlut_direction(&local_frame, s.theta_i, s.phi_i, wo);
-        return { wo[0], wo[1], wo[2] };
+        return { { wo[0], wo[1], wo[2] }, s.pdf_solid_angle };
     }
 
     /// Density of what propose() draws, per steradian.
@@ -186,10 +193,20 @@ private:
             i.theta);
     }
 
+    /// The nested value, and its density where it counts.
+    std::pair<Spectrum, Float> eval_nested(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
+                                           Mask active) const {
+        if (m_nested_weight > 0.f)
+            return m_nested->eval_pdf(ctx, si, wo, active);
+        return { m_nested->eval(ctx, si, wo, active), 0.f };
+    }
+
     Float mix(Float nested_pdf, const SurfaceInteraction3f &si, const Vector3f &wo) const {
-        if (m_nested_weight >= 1.f)
-            return nested_pdf;
-        return m_nested_weight * nested_pdf + (1.f - m_nested_weight) * proposal_pdf(si, wo);
+        return m_nested_weight >= 1.f ? nested_pdf : mix(nested_pdf, proposal_pdf(si, wo));
+    }
+
+    Float mix(Float nested_pdf, Float proposal_pdf) const {
+        return m_nested_weight * nested_pdf + (1.f - m_nested_weight) * proposal_pdf;
     }
 
     std::string m_name;

@@ -126,7 +126,7 @@ def test_a_density_three_percent_off_would_be_seen(drawn, exact):
 def test_a_family_samples_nearly_as_well_as_the_bsdfs_own_sampler(drawn):
     family = variance(drawn["family over offsets"])
     assert family < 0.25 * variance(drawn["one fitted model"])
-    assert 1 + family < 1.05 * (1 + variance(drawn["its own"]))
+    assert 1 + family < 1.02 * (1 + variance(drawn["its own"]))
 
 
 def test_one_model_comes_between_the_built_in_ones_and_the_bsdfs_own_sampler(drawn):
@@ -157,15 +157,18 @@ def test_chi_square_accepts_the_family(mi, family, place):
 
 
 def test_the_density_of_a_draw_is_the_density_asked_for(mi, family):
-    context = mi.BSDFContext()
+    """To the rounding of a drawn direction, as in runtime/test_components.py."""
+    context, off = mi.BSDFContext(), []
     for place in PLACES:
         si = interaction(mi, *map(math.radians, place))
         for u, v, w in np.random.default_rng(3).random((200, 3)).tolist():
             sample, weight = family.sample(context, si, u, mi.Point2f(v, w))
             value, density = family.eval_pdf(context, si, sample.wo)
             assert density == family.pdf(context, si, sample.wo)
-            assert sample.pdf == pytest.approx(density, rel=1e-6)
-            assert np.array(weight) == pytest.approx(np.array(value) / density, rel=1e-5)
+            assert np.array(weight) == pytest.approx(np.array(value) / sample.pdf, rel=1e-6)
+            off.append(abs(sample.pdf / density - 1))
+    assert np.quantile(off, 0.99) < 1e-4
+    assert np.median(off) < 1e-6
 
 
 def test_the_other_half_of_the_fibre_is_the_mirror_image(mi, family):
@@ -174,17 +177,6 @@ def test_the_other_half_of_the_fibre_is_the_mirror_image(mi, family):
         here = family.pdf(context, interaction(mi, 0.4, 0.7), direction(mi, theta, phi))
         there = family.pdf(context, interaction(mi, 0.4, -0.7), direction(mi, theta, -phi))
         assert here == pytest.approx(there, rel=1e-5)
-
-
-def test_an_offset_between_two_is_their_mixture(mi, family):
-    """Half-way in the angle around the fibre, at a theta_r that has a row."""
-    context, (low, high) = mi.BSDFContext(), np.linspace(0, math.pi / 2, 7)[2:4].tolist()
-    for theta, phi in [(-0.5, 2.4), (0.1, 0.3), (1.2, -2.0)]:
-        pdf = [
-            family.pdf(context, interaction(mi, 0.3, gamma), direction(mi, theta, phi + gamma))
-            for gamma in (low, (low + high) / 2, high)
-        ]
-        assert pdf[1] == pytest.approx((pdf[0] + pdf[2]) / 2, rel=1e-3)
 
 
 def spoilt(rough, folder, change):
@@ -203,14 +195,106 @@ def without(key):
     return lambda text: "\n".join(line for line in text.splitlines() if not line.startswith(key))
 
 
+class Written:
+    """The density that a family's files describe (hairlut.familyfiles), read without the plugin."""
+
+    def __init__(self, folder):
+        from hairlut import exr
+
+        lines = [line.split() for line in (folder / "family.txt").read_text().splitlines()]
+        numbers = {key: [line[1:] for line in lines if line[0] == key] for key in ("offset", "lobe", "turn")}
+        self.theta_r = np.array(lines[2][1:], float)
+        self.angle = np.arcsin(np.array(numbers["offset"], float)[:, 0])
+        shape = (len(self.angle), -1, len(self.theta_r))
+        self.names = np.reshape([words[0] for words in numbers["lobe"]], shape[:2])
+        self.weight = np.array([words[1:] for words in numbers["lobe"]], float).reshape(shape)
+        self.turn = np.array(numbers["turn"], float).reshape(shape)
+        self.tables = {
+            name: [exr.read(folder / name / f"direct_{angle}.exr")[0] for angle in ("theta", "phi")]
+            for name in set(self.names.ravel())
+        }
+
+    def pdf(self, theta_r, gamma, theta_i, phi):
+        """Per steradian, for a viewer in front of the fibre; phi is measured from the viewer's azimuth."""
+        from hairlut import interpolant
+
+        phi, gamma = (phi, gamma) if gamma >= 0 else (-phi, -gamma)
+        o = int(abs(self.angle - gamma).argmin())
+        sum_ = 0.0
+        for k, name in enumerate(self.names[o]):
+            weight, turn = (
+                np.interp(gamma, self.angle, [np.interp(theta_r, self.theta_r, row) for row in part[:, k]])
+                for part in (self.weight, self.turn)
+            )
+            inclination, azimuth = self.tables[name]
+            at = (phi - turn) % (2 * np.pi)
+            sum_ += weight * (
+                interpolant.pdf(inclination, theta_r, theta_i) * interpolant.pdf(azimuth, theta_r, at)
+            )
+        return float(sum_[0]) / math.cos(theta_i)
+
+
+def several_shapes(text):
+    """The family's text with other models from half of the offsets on."""
+    lines = text.splitlines()
+    for k in range(len(lines) // 2, len(lines)):
+        lines[k] = (
+            lines[k].replace("lobe_0", "lobe_x").replace("lobe_1", "lobe_0").replace("lobe_x", "lobe_1")
+        )
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("change", [str, several_shapes], ids=["one-shape", "several-shapes"])
+def test_the_plugin_draws_what_the_files_say(mi, rough, tmp_path, change):
+    """On and between the offsets, on both sides of the fibre and beyond the last theta_r."""
+    spoilt(rough, tmp_path, change)
+    family = mi.load_dict({**rough["family over offsets"], "family": str(tmp_path)})
+    context, written = mi.BSDFContext(), Written(tmp_path)
+    random = np.random.default_rng(5)
+    places = [(0.3, 0.0), (0.3, 0.7), (-0.2, -1.1), (1.5, 1.5), (-1.0, 0.13), (0.9, -1.57)]
+    for theta_r, gamma in [*places, *random.uniform(-1.5, 1.5, (20, 2)).tolist()]:
+        for theta_i, phi in random.uniform((-1.5, 0), (1.5, 2 * math.pi), (20, 2)).tolist():
+            found = family.pdf(context, interaction(mi, theta_r, gamma), direction(mi, theta_i, phi + gamma))
+            assert found == pytest.approx(written.pdf(theta_r, gamma, theta_i, phi), rel=2e-3)
+
+
+def test_a_viewer_behind_the_surface_is_one_in_front_of_it_mirrored(mi, family):
+    context = mi.BSDFContext()
+    for phi_r, front in [(2.5, math.pi - 2.5), (-1.8, 1.8 - math.pi)]:
+        here = family.pdf(context, interaction(mi, 0.4, phi_r), direction(mi, 0.2, phi_r + 1.0))
+        there = family.pdf(context, interaction(mi, 0.4, front), direction(mi, 0.2, front + 1.0))
+        assert here == pytest.approx(there, rel=1e-4)
+
+
 MISTAKES = {
-    "not a family": (lambda text: "hello", "line 1: expected .hairlut-family 1. first"),
-    "newer": (lambda text: text.replace("family 1", "family 2"), "line 1: expected version 1"),
+    "not a family": (lambda text: "hello", "line 1: expected .hairlut-family 2. first"),
+    "newer": (lambda text: text.replace("family 2", "family 3"), "line 1: expected version 2"),
     "empty": (lambda text: "", "ends too early"),
     "no theta_r": (without("theta_r"), "line 3: expected a line theta_r before"),
-    "no lobes": (without("lobe"), "line 5: expected offsets to increase, with at least one lobe"),
+    "no lobes": (without("lobe"), "line 5: expected a line lobe before each line turn"),
+    "no turns": (without("turn"), "line 6: expected a line turn after each line lobe"),
+    "only offsets": (
+        lambda text: without("lobe")(without("turn")(text)),
+        "line 5: expected offsets to increase, with a line lobe and a line turn for each",
+    ),
+    "a lobe less": (
+        lambda text: "\n".join(text.splitlines()[:12]),
+        "ends too early: expected .* as many pairs of lines .* as the first",
+    ),
+    "a lobe less at an offset": (
+        lambda text: "\n".join(text.splitlines()[:12] + text.splitlines()[17:]),
+        "line 13: expected offsets to increase, with a line lobe and a line turn",
+    ),
+    "too many lobes": (
+        lambda text: "\n".join(text.splitlines()[:4] + 9 * text.splitlines()[4:6]),
+        "line 21: expected at most 8 lobes",
+    ),
     "no offsets": (without("offset"), "line 4: expected a line offset before the first lobe"),
-    "few weights": (lambda text: text.rstrip().rpartition(" ")[0], "expected a model's name and 9 weights"),
+    "few turns": (lambda text: text.rstrip().rpartition(" ")[0], "expected 9 angles in radians"),
+    "few weights": (
+        lambda text: text.replace("turn", "0.5\nturn", 1).replace("\n0.5", " 0.5", 1),
+        "line 5: expected a model's name and 9 weights",
+    ),
     "negative": (
         lambda text: text.replace("lobe_0 0.", "lobe_0 -0.", 1),
         r"expected a model's name and 9 weights",
@@ -222,12 +306,12 @@ MISTAKES = {
     "unknown key": (lambda text: text + "colour brown\n", "found .colour."),
     "no weight": (
         lambda text: "\n".join(
-            line if not line.startswith("lobe offset_00") else " ".join([*line.split()[:2], *["0"] * 9])
+            line if not line.startswith("lobe") else " ".join([*line.split()[:2], *["0"] * 9])
             for line in text.splitlines()
         ),
         "at offset 0.* no lobe has a weight above 0 at theta_r number 1",
     ),
-    "missing model": (lambda text: text.replace("offset_03_lobe_1", "none"), "none.*directory of tables"),
+    "missing model": (lambda text: text.replace("shape_0_lobe_1", "none"), "none.*directory of tables"),
     "offset of two": (lambda text: text.replace("offset 1\n", "offset 2\n"), "expected an offset in"),
 }
 

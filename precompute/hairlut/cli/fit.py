@@ -8,6 +8,7 @@ from ..decompose import LOBES
 from ..distribution import CELLS, ROWS
 from ..errors import HairlutError
 from ..family import LOBES as FAMILY_LOBES
+from ..family import SHAPES
 from ..offsets import holds_offsets
 
 Report = Callable[[str, float], None]
@@ -19,8 +20,8 @@ EXAMPLES = """examples:
 the data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
 CSV, or arrays of these names as npz. A full grid of value is a density; anything else is samples, weighed
 by value. An npz with an array offset (increasing, in [-1, 1]: where across its width the fibre is hit) and a
-value of four axes (offset, theta_r, theta_i, phi) becomes a family: model files for each offset, and a text
-file of their weights, in a directory (see the module hairlut.familyfiles)."""
+value of four axes (offset, theta_r, theta_i, phi) becomes a family: a model file for each lobe, and a text
+file of their weights and turns, in a directory (see the module hairlut.familyfiles)."""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
@@ -53,7 +54,15 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         type=int,
         default=FAMILY_LOBES,
         metavar="K",
-        help="products of inclination and azimuth at each offset of a family (default: %(default)s)",
+        help="highlights of a family, each a product of inclination and azimuth (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--shapes-per-lobe",
+        type=int,
+        default=SHAPES,
+        metavar="S",
+        help="azimuths of each lobe of a family, each for a part of the offsets: more where highlights "
+        "change their shape over the offset, not just their place (default: %(default)s)",
     )
     parser.add_argument("--no-plot", action="store_true", help="write no picture (matplotlib is not needed)")
     return parser
@@ -102,7 +111,8 @@ def _family(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
 
     if args.lobes != "both":
         raise HairlutError(f"--lobes {args.lobes}: {args.data} has offsets: use --lobes-per-offset")
-    family = fit_family(read(args.data, args.measure == "solid-angle"), args.lobes_per_offset, report)
+    data = read(args.data, args.measure == "solid-angle")
+    family = fit_family(data, args.lobes_per_offset, args.shapes_per_lobe, report)
     folder = args.out / (args.name or args.data.stem)
     written = write_family(family, folder)
     return text(family), [folder, written[-1]]

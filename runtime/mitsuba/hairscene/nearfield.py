@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 REACH = math.asin(0.998)  # of gamma: nearer to the rim the engine's hair has only its mirror highlight
+LIT = 1e-4
 POINTS = (128, 144, 64)  # of theta_i, phi and gamma, of the reference
 FEWER = (96, 108, 48)  # the same, to see how exact that is
 
@@ -47,6 +48,31 @@ def contrasted(w: np.ndarray) -> np.ndarray:
 
 def _unit(*v: float) -> np.ndarray:
     return np.array(v) / np.linalg.norm(v)
+
+
+def largest_weight(mi: Any, bsdf: Any, theta_r: float) -> float:
+    """The largest weight, value over density relative to the light at its offset, of a direction in which
+    light of at least LIT of the brightest goes; over a grid of directions and offsets."""
+    theta, phi = midpoints(-math.pi / 2, math.pi / 2, 96), midpoints(0, 2 * math.pi, 108)
+    si, context, largest = mi.SurfaceInteraction3f(), mi.BSDFContext(), 0.0
+    for gamma in midpoints(-REACH, REACH, 17):
+        si.wi = direction(mi, theta_r, gamma)
+        found = [
+            [bsdf.eval_pdf(context, si, direction(mi, t, p + gamma)) for p in phi.tolist()] for t in theta
+        ]
+        value, density = (np.array([[part(f) for f in row] for row in found]) for part in (_grey, _density))
+        cell = (math.pi / theta.size) * (2 * math.pi / phi.size)
+        weight = value / density / ((value * np.cos(theta)[:, None]).sum() * cell)
+        largest = max(largest, weight[value > LIT * value.max()].max())
+    return float(largest)
+
+
+def _grey(found: tuple) -> float:
+    return sum(found[0]) / 3
+
+
+def _density(found: tuple) -> float:
+    return found[1]
 
 
 def light(mi: Any, bsdf: Any, theta_r: float) -> tuple[np.ndarray, np.ndarray]:

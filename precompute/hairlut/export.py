@@ -159,8 +159,8 @@ def _cells(table: Table) -> np.ndarray:
     bound = np.float32(table.cell.limit) * d
     c = np.clip(c, -bound, bound)
     half = table.width // 2 + 1
-    low = np.stack([x[:, :-1], d, c], axis=-1)[:, :half]
-    high = np.stack([x[:, 1:], -d, c], axis=-1)[:, ::-1][:, :half]
+    low = np.stack([x[:, :-1], d + c, c], axis=-1)[:, :half]
+    high = np.stack([x[:, 1:], c - d, c], axis=-1)[:, ::-1][:, :half]
     cells = np.concatenate([low, high], axis=1).swapaxes(0, 1)
     return np.pad(cells, ((0, 0), (0, 0), (0, 1))).reshape(2 * half, -1)
 

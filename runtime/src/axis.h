@@ -2,10 +2,10 @@
  *
  * The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
  *
- *     x(f) = x0 + f (d + c (1-f)),     dx/df = d + c (1-2f)
+ *     x(f) = x0 + f (a - c f),     dx/df = a - 2 c f
  *
- * where d is the cell's width and c its curvature. The density is du/|dx|. All is counted from the nearer end of the u
- * axis: in the high half of a row d is negative. */
+ * where c is the cell's curvature and a its slope at f = 0, its width d plus c. The density is du/|dx|. All is counted from
+ * the nearer end of the u axis: in the high half of a row d and a are negative. */
 #ifndef HAIRLUT_AXIS_H
 #define HAIRLUT_AXIS_H
 
@@ -36,7 +36,7 @@ typedef struct hairlut_row {
 } hairlut_row;
 
 typedef struct hairlut_cell {
-    float x0, d, c;
+    float x0, a, c;
 } hairlut_cell;
 
 /* A place on the u axis: its cell, counted from the low or the high end, the fraction in it, and |du/dcolumn| there. */
@@ -97,13 +97,13 @@ static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta
     return row;
 }
 
-/* Cell i of rows j and j+1, from an end; t in all lanes. Blended as (1-t) a + t b, which keeps a width above zero at every
- * t, as a + t (b-a) does not where b is far below a. */
+/* Cell i of rows j and j+1, from an end; t in all lanes. Blended as (1-t) p + t q, which keeps a slope above zero at
+ * every t, as p + t (q-p) does not where q is far below p. */
 HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad t, int i, int high)
 {
-    const float *a = axis->ends[high] + (i * axis->pitch + j * HAIRLUT_CELL);
-    const hairlut_quad below = hairlut_quad_mul(hairlut_quad_sub(hairlut_quad_all(1.0f), t), hairlut_quad_load(a));
-    const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(a + HAIRLUT_CELL));
+    const float *p = axis->ends[high] + (i * axis->pitch + j * HAIRLUT_CELL), *q = p + HAIRLUT_CELL;
+    const hairlut_quad below = hairlut_quad_mul(hairlut_quad_sub(hairlut_quad_all(1.0f), t), hairlut_quad_load(p));
+    const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(q));
     float part[3];
     hairlut_quad_first3(hairlut_quad_add(below, above), part);
     const hairlut_cell cell = {part[0], part[1], part[2]};
@@ -177,14 +177,14 @@ HAIRLUT_INLINE int hairlut_axis_find(const hairlut_axis *axis, hairlut_row row, 
  * slope at the cell's flatter end and the distance from there, which cancels nothing. */
 static inline float hairlut_cell_solve(const hairlut_cell *cell, float x, float *slope)
 {
-    const float sign = copysignf(1.0f, cell->d); /* no branch to predict, nor in what follows */
-    const float d = sign * cell->d, c = sign * cell->c;
+    const float sign = copysignf(1.0f, cell->a); /* no branch to predict, nor in what follows */
+    const float a = sign * cell->a, c = sign * cell->c, d = a - c;
     const float distance = hairlut_clamp(sign * (x - cell->x0), 0.0f, d);
     const float flat = d - fabsf(c);
     const float far_end = 0.5f * (d + copysignf(d, c)); /* d or 0 */
     const float away = fabsf(far_end - distance);
     *slope = sqrtf(flat * flat + 4.0f * fabsf(c) * away);
-    return hairlut_min(2.0f * distance / (d + c + *slope), 1.0f);
+    return hairlut_min(2.0f * distance / (a + *slope), 1.0f);
 }
 
 /* Cell `found`, counted from the low end, as stored: from the nearer end of the row. *i gets its index there, *high whether
@@ -226,9 +226,8 @@ HAIRLUT_INLINE hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float 
     const hairlut_quad t = hairlut_quad_split(hairlut_axis_position(axis, theta_r), &j);
     const hairlut_knot knot = hairlut_axis_knot(axis, u);
     const hairlut_cell cell = hairlut_axis_cell(axis, j, t, knot.i, knot.high);
-    const float rest = 1.0f - knot.f;
-    const hairlut_draw draw = {cell.x0 + knot.f * (cell.d + cell.c * rest),
-                               knot.du / fabsf(cell.d + cell.c * (rest - knot.f))};
+    const float bend = cell.c * knot.f, mean_slope = cell.a - bend;
+    const hairlut_draw draw = {cell.x0 + knot.f * mean_slope, knot.du / fabsf(mean_slope - bend)};
     return draw;
 }
 

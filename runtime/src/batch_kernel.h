@@ -40,13 +40,13 @@ typedef struct queries {
 } queries;
 
 typedef struct cells {
-    real x0, d, c;
+    real x0, a, c;
 } cells;
 
 /* The cells of a block. */
 typedef struct block_of_cells {
     float x0[BLOCK];
-    float d[BLOCK];
+    float a[BLOCK];
     float c[BLOCK];
 } block_of_cells;
 
@@ -107,23 +107,22 @@ static inline void place(const hairlut_axis *axis, size_t n, const float *theta_
 /* hairlut_axis_cell */
 static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
 {
-    real a[HAIRLUT_CELL], b[HAIRLUT_CELL];
-    gather4(axis->ends[0], at, a);
-    gather4(axis->ends[0] + HAIRLUT_CELL, at, b);
+    real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
+    gather4(axis->ends[0], at, p);
+    gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
     const real s = sub(all(1.0f), t);
-    const cells cell = {add(mul(s, a[0]), mul(t, b[0])), add(mul(s, a[1]), mul(t, b[1])), add(mul(s, a[2]), mul(t, b[2]))};
+    const cells cell = {add(mul(s, p[0]), mul(t, q[0])), add(mul(s, p[1]), mul(t, q[1])), add(mul(s, p[2]), mul(t, q[2]))};
     return cell;
 }
 
 /* hairlut_axis_sample, not moved into the domain, at the places of samples s .. s+LANES-1 */
 static inline real draw(const hairlut_axis *axis, const places *p, size_t s, real *pdf)
 {
-    const real f = load(p->f + s), rest = sub(all(1.0f), f);
+    const real f = load(p->f + s);
     const cells cell = load_cells(axis, p->at + s, load(p->t + s));
-    const real x = add(cell.x0, mul(f, add(cell.d, mul(cell.c, rest))));
-    const real slope = magnitude(add(cell.d, mul(cell.c, sub(rest, f))));
-    *pdf = over(load(p->du + s), slope);
-    return x;
+    const real bend = mul(cell.c, f), mean_slope = sub(cell.a, bend);
+    *pdf = over(load(p->du + s), magnitude(sub(mean_slope, bend)));
+    return add(cell.x0, mul(f, mean_slope));
 }
 
 /* hairlut_axis_find up to the pivots, n of them: the first cell of the block, and the offset of its first texel */
@@ -178,7 +177,7 @@ static inline void load_found(const hairlut_axis *axis, size_t n, const queries 
     for (size_t s = 0; s < n; s += LANES) {
         const cells cell = load_cells(axis, q->at + s, load(q->t + s));
         store(found->x0 + s, cell.x0);
-        store(found->d + s, cell.d);
+        store(found->a + s, cell.a);
         store(found->c + s, cell.c);
     }
 }
@@ -213,13 +212,14 @@ static inline void ask(const hairlut_axis *axis, real theta_r, real x, queries *
 /* hairlut_cell_solve; *slope gets |dx/df| */
 static inline real solve(cells cell, real x, real *slope)
 {
-    const mask falls = greater(all(0.0f), cell.d);
-    const real d = magnitude(cell.d), c = choose(falls, sub(all(-0.0f), cell.c), cell.c), bend = magnitude(c);
+    const mask falls = greater(all(0.0f), cell.a);
+    const real a = magnitude(cell.a), c = choose(falls, sub(all(-0.0f), cell.c), cell.c), bend = magnitude(c);
+    const real d = sub(a, c);
     const real distance = clamp(choose(falls, sub(cell.x0, x), sub(x, cell.x0)), all(0.0f), d);
     const real flat = sub(d, bend);
     const real away = choose(greater(c, all(0.0f)), sub(d, distance), distance);
     *slope = root(add(mul(flat, flat), mul(mul(all(4.0f), bend), away)));
-    return smaller(over(mul(all(2.0f), distance), add(add(d, c), *slope)), all(1.0f));
+    return smaller(over(mul(all(2.0f), distance), add(a, *slope)), all(1.0f));
 }
 
 /* hairlut_axis_pdf */
@@ -227,7 +227,7 @@ static inline real density(const hairlut_axis *axis, const queries *q, const blo
 {
     const real x = load(q->x + s);
     const whole i = iload(q->cell + s);
-    const cells cell = {load(found->x0 + s), load(found->d + s), load(found->c + s)};
+    const cells cell = {load(found->x0 + s), load(found->a + s), load(found->c + s)};
     real slope;
     const real k = all(axis->k), part = mul(k, solve(cell, x, &slope));
     const real near_end = add(all(axis->f0), mul(k, converted(i)));

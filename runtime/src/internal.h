@@ -32,12 +32,13 @@ enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
 
 /* A cell of one row, seen from the end of the row that is nearer: at the fraction f of the way across,
  *
- *     x = x0 + f (d + c (1-f)),
+ *     x = x0 + f (a - c f),
  *
- * where d < 0 if the high end is the nearer one. The cells stand in two halves, one from the low end on and one from the high
- * end on, so that a sample, whose place is counted from the nearer end, needs no mirroring; both go one cell beyond u = 1/2.
- * In a half, a cell's rows follow each other: the two that a sample blends are mostly in one cache line. A cell is x0, d, c
- * and a float that nobody reads: one load of 16 bytes. */
+ * where a = d + c with d the cell's width and c its curvature; d and a are negative if the high end is the nearer one. The
+ * cells stand in two halves, one from the low end on and one from the high end on, so that a sample, whose place is counted
+ * from the nearer end, needs no mirroring; both go one cell beyond u = 1/2. In a half, a cell's rows follow each other: the
+ * two that a sample blends are mostly in one cache line. A cell is x0, a, c and a float that nobody reads: one load of 16
+ * bytes. */
 enum { HAIRLUT_CELL = 4 /* floats */ };
 #define HAIRLUT_PITCH(height) (HAIRLUT_CELL * ((height) + 1)) /* floats from one cell of a row to the next */
 #define HAIRLUT_HALF(columns) ((columns) / 2 + 1)              /* cells of a row */

@@ -127,7 +127,7 @@ static float curvature(const float *row, int width, int i, float limit)
 static void store_cell(float *stored, float x0, float d, float c)
 {
     stored[0] = x0;
-    stored[1] = d;
+    stored[1] = d + c;
     stored[2] = c;
     stored[3] = 0.0f;
 }

@@ -87,7 +87,7 @@ LOOP void axis_cell(const hairlut_model *model, int axis, size_t n, const float 
         int nearer, high;
         index[i] = hairlut_axis_find(a, row, x[i]);
         const hairlut_cell cell = hairlut_axis_found(a, row, index[i], &nearer, &high);
-        d[i] = fabsf(cell.d);
+        d[i] = fabsf(cell.a - cell.c);
         c[i] = cell.c;
     }
 }

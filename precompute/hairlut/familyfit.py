@@ -21,9 +21,9 @@ from .lobes import Array
 from .offsets import OffsetData
 from .turning import TWO_PI, track, turned
 
-POWER = 3
+POWER = 4
 """The mean over the light of (f/q)^(POWER - 1) is made least. 2 would make the relative variance least;
-3 cares more for the largest weights, each of them a firefly where a lamp stands."""
+4 costs a little of it and cares for the largest weights, each of them a firefly where a lamp stands."""
 
 FIRST_STEPS, STEPS = 1500, 40  # of free updates, for the first theta_r and for any other
 ROUNDS, BETWEEN = 4, 20  # of laying azimuths upon each other, and free updates between two of them

@@ -129,6 +129,15 @@ def test_a_family_samples_nearly_as_well_as_the_bsdfs_own_sampler(drawn):
     assert 1 + family < 1.02 * (1 + variance(drawn["its own"]))
 
 
+def test_a_family_has_no_large_weights(mi, rough):
+    from hairscene.nearfield import largest_weight
+
+    kinds = ("family over offsets", "one fitted model", "its own")
+    family, one, own = (largest_weight(mi, mi.load_dict(rough[kind]), VIEWER) for kind in kinds)
+    assert 1 < own < 1.5
+    assert family < 4 < one
+
+
 def test_one_model_comes_between_the_built_in_ones_and_the_bsdfs_own_sampler(drawn):
     fitted = variance(drawn["one fitted model"])
     assert variance(drawn["its own"]) < fitted

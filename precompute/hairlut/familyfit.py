@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -63,7 +64,7 @@ class _Task:
     joint: Array
     shape: Array
 
-    @property
+    @cached_property
     def marginal(self) -> Array:
         """(n,) masses of the inclinations."""
         return self.joint.sum(axis=1)

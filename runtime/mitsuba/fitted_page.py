@@ -105,6 +105,10 @@ fibre from its middle to its rim, and drawn from at {fine}. The last column is w
 different widths along the fibre. With one lobe less, two highlights share one, and what they make together is
 no shape that turns with the offset. One lobe more finds nothing.
 
+That is one BSDF, whose highlights keep their shapes. Where azimuths change theirs over the offset,
+`hairlut fit --shapes-per-lobe` gives each lobe several (`tests/precompute/test_family.py` has such a hair).
+The grid must resolve the highlights: what is narrower than its cells the tables do not know.
+
 ## Unbiased
 
 The light was also found by a quadrature of the BSDF (exact to {quadrature:.0e}). Of {count} comparisons, at
@@ -320,7 +324,8 @@ def verdict(hairs: dict) -> str:
 
 
 def _range(values: list[float], digits: int = 2) -> str:
-    return f"{min(values):.{digits}f} to {max(values):.{digits}f}"
+    low, high = (f"{end(values):.{digits}f}" for end in (min, max))
+    return low if low == high else f"{low} to {high}"
 
 
 def _all(names: list[str], hairs: dict) -> str:

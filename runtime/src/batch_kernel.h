@@ -299,8 +299,9 @@ static inline void store_samples(const hairlut_axis *axis, hairlut_samples out, 
         store(out.pdf_solid_angle + s, over(pdf, cosine(theta_i)));
 }
 
-static inline void sample_direct_block(const hairlut_model *model, size_t n, const float *const in[4], hairlut_samples out)
+static inline void sample_direct_block(const hairlut_model *shared, size_t n, const float *const in[4], hairlut_samples out)
 {
+    const hairlut_model copy = *shared, *model = &copy; /* no output can change it: what a loop uses stays in registers */
     places theta, phi;
     place(&model->direct_theta, n, in[0], in[2], &theta);
     place(&model->direct_phi, n, in[0], in[3], &phi);
@@ -317,9 +318,10 @@ static inline void sample_direct_block(const hairlut_model *model, size_t n, con
     }
 }
 
-static inline void sample_multiple_block(const hairlut_model *model, size_t n, const float *const in[4],
+static inline void sample_multiple_block(const hairlut_model *shared, size_t n, const float *const in[4],
                                          hairlut_samples out)
 {
+    const hairlut_model copy = *shared, *model = &copy;
     places theta;
     place(&model->multiple_theta, n, in[0], in[2], &theta);
     for (size_t s = 0; s < n; s += LANES) {

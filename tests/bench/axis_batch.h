@@ -4,8 +4,9 @@
 
 #include "axis_bench.h"
 
-static void axis_sample(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, float *x, float *pdf)
+static void axis_sample(const hairlut_axis *shared, size_t n, const float *theta_r, const float *u, float *x, float *pdf)
 {
+    const hairlut_axis copy = *shared, *axis = &copy;
     for (size_t b = 0; b < n; b += BLOCK) {
         const size_t m = n - b < BLOCK ? n - b : BLOCK;
         places p;

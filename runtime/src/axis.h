@@ -231,14 +231,19 @@ HAIRLUT_INLINE hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float 
     return draw;
 }
 
-/* The density at x, which look_up found. The middle cell of an even number of columns is seen from the low end. Beyond its
- * middle the high end is nearer: hence the smaller of the distances from both ends, here and in hairlut_axis_invert. */
+/* The column, counted from the end that is nearer. The middle cell of an even number of columns is seen from the low end, and
+ * beyond its middle the high end is nearer: hence the smaller of the distances from both. */
+static inline float hairlut_axis_folded(const hairlut_axis *axis, hairlut_place place)
+{
+    const float column = (float)place.i + place.f;
+    return hairlut_min(column, (float)(axis->columns - 1) - column);
+}
+
+/* The density at x, which look_up found. */
 HAIRLUT_INLINE float hairlut_axis_density(const hairlut_axis *axis, hairlut_found found, float x)
 {
     const hairlut_place place = hairlut_axis_locate(axis, found, x);
-    const float k = axis->k, part = k * place.f;
-    const float near_end = axis->f0 + k * (float)place.i, far_end = axis->f0 + k * (float)(axis->columns - 1 - place.i);
-    const float y = hairlut_min(near_end + part, far_end - part);
+    const float y = axis->f0 + axis->k * hairlut_axis_folded(axis, place);
     const float pdf = hairlut_axis_stretch(axis, y) * (axis->du / place.slope);
     return x >= axis->low && x <= axis->high ? pdf : 0.0f;
 }
@@ -250,16 +255,16 @@ static inline float hairlut_axis_pdf(const hairlut_axis *axis, float theta_r, fl
 
 static inline float hairlut_axis_invert(const hairlut_axis *axis, float theta_r, float x)
 {
-    const hairlut_place place = hairlut_axis_locate(axis, hairlut_axis_look_up(axis, theta_r, x), x);
-    const float column = (float)place.i + place.f, mirrored = (float)(axis->columns - 1) - column;
     const float f0 = axis->f0;
-    float m = axis->k * hairlut_min(column, mirrored);
+    const hairlut_place place = hairlut_axis_locate(axis, hairlut_axis_look_up(axis, theta_r, x), x);
+    const float column = hairlut_axis_folded(axis, place);
+    float m = axis->k * column;
     if (axis->warp == HAIRLUT_WARP_QUARTIC) {
         const float y = f0 + m;
         m *= (y + f0) * (y * y + f0 * f0); /* y^4 - f0^4 without its cancellation */
     }
     m = hairlut_clamp(m, 0.0f, 0.5f);
-    const int high = place.high | (mirrored < column);
+    const int high = place.high | (column < (float)place.i + place.f);
     return high ? 1.0f - m : m;
 }
 

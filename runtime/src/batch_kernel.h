@@ -5,6 +5,7 @@
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
  *   every(m)        whether all lanes are true
+ *   times_sign(a, b)  a with its sign changed where b's is set
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
  *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
  *
@@ -147,7 +148,16 @@ static inline void halve_blocks(const hairlut_axis *axis, size_t n, queries *q)
     }
 }
 
-/* The rest of hairlut_axis_find, among as many texels. */
+/* hairlut_axis_found, but for the cell itself */
+static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, queries *q, size_t s)
+{
+    const mask high = at_least(converted(found), all((float)(axis->columns / 2)));
+    const whole i = ichoose(high, isub(iall(axis->columns - 2), found), found);
+    istore(q->cell + s, i);
+    istore(q->at + s, cell_offset(axis, iload(q->j + s), i, high));
+}
+
+/* The rest of hairlut_axis_find, among as many texels, and where to read the cell. */
 static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q, int texels)
 {
     int count[BLOCK];
@@ -155,19 +165,7 @@ static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q
         count[k] = HAIRLUT_COUNT(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], texels);
     for (size_t s = 0; s < n; s += LANES) {
         const whole more = ilarger(isub(iload(count + s), iall(1)), iall(0));
-        istore(q->cell + s, ismaller(iadd(iload(q->cell + s), more), iall(axis->columns - 2)));
-    }
-}
-
-/* hairlut_axis_found, but for the cell itself */
-static inline void turn_to_nearer_end(const hairlut_axis *axis, size_t n, queries *q)
-{
-    for (size_t s = 0; s < n; s += LANES) {
-        const whole found = iload(q->cell + s);
-        const mask high = at_least(converted(found), all((float)(axis->columns / 2)));
-        const whole i = ichoose(high, isub(iall(axis->columns - 2), found), found);
-        istore(q->cell + s, i);
-        istore(q->at + s, cell_offset(axis, iload(q->j + s), i, high));
+        turn_to_nearer_end(axis, ismaller(iadd(iload(q->cell + s), more), iall(axis->columns - 2)), q, s);
     }
 }
 
@@ -192,7 +190,6 @@ static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q, bl
         halve_blocks(axis, n, q);
         find_in_blocks(axis, n, q, HAIRLUT_PIVOTS);
     }
-    turn_to_nearer_end(axis, n, q);
     load_found(axis, n, q, found);
 }
 
@@ -212,10 +209,8 @@ static inline void ask(const hairlut_axis *axis, real theta_r, real x, queries *
 /* hairlut_cell_solve; *slope gets |dx/df| */
 static inline real solve(cells cell, real x, real *slope)
 {
-    const mask falls = greater(all(0.0f), cell.a);
-    const real a = magnitude(cell.a), c = choose(falls, sub(all(-0.0f), cell.c), cell.c), bend = magnitude(c);
-    const real d = sub(a, c);
-    const real distance = clamp(choose(falls, sub(cell.x0, x), sub(x, cell.x0)), all(0.0f), d);
+    const real a = magnitude(cell.a), c = times_sign(cell.c, cell.a), bend = magnitude(c), d = sub(a, c);
+    const real distance = clamp(times_sign(sub(x, cell.x0), cell.a), all(0.0f), d);
     const real flat = sub(d, bend);
     const real away = choose(greater(c, all(0.0f)), sub(d, distance), distance);
     *slope = root(add(mul(flat, flat), mul(mul(all(4.0f), bend), away)));
@@ -229,10 +224,9 @@ static inline real density(const hairlut_axis *axis, const queries *q, const blo
     const whole i = iload(q->cell + s);
     const cells cell = {load(found->x0 + s), load(found->a + s), load(found->c + s)};
     real slope;
-    const real k = all(axis->k), part = mul(k, solve(cell, x, &slope));
-    const real near_end = add(all(axis->f0), mul(k, converted(i)));
-    const real far_end = add(all(axis->f0), mul(k, converted(isub(iall(axis->columns - 1), i))));
-    const real y = smaller(add(near_end, part), sub(far_end, part));
+    const real column = add(converted(i), solve(cell, x, &slope));
+    const real folded = smaller(column, sub(all((float)(axis->columns - 1)), column)); /* hairlut_axis_folded */
+    const real y = add(all(axis->f0), mul(all(axis->k), folded));
     return mul(stretch(axis, y), over(load(q->du + s), slope));
 }
 

@@ -19,6 +19,7 @@ static inline real root(real a) { return _mm256_sqrt_ps(a); }
 static inline real smaller(real a, real b) { return _mm256_min_ps(a, b); }
 static inline real larger(real a, real b) { return _mm256_max_ps(a, b); }
 static inline real magnitude(real a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
+static inline real times_sign(real a, real b) { return _mm256_xor_ps(a, _mm256_and_ps(b, _mm256_set1_ps(-0.0f))); }
 
 static inline whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
 static inline void istore(int *p, whole a) { _mm256_storeu_si256((__m256i *)p, a); }

@@ -26,6 +26,7 @@ from .table import Table
 
 HEAVY = 4.0
 BETWEEN = 3
+ON_ROWS = slice(None, None, BETWEEN + 1)  # of the inclinations, those of the table's own rows
 ORDER = 8
 MAX_DEPTH = 48
 CHUNK = 400_000  # points worked on at once

@@ -23,8 +23,9 @@ import numpy as np
 from .errors import HairlutError
 from .exact import Exact, exact_at
 from .interpolant import Cell
+from .invert import ALL
 from .lobes import Lobe
-from .measure import BETWEEN, Errors, estimate, inclinations, measure, narrowest_cell
+from .measure import BETWEEN, ON_ROWS, Errors, estimate, inclinations, measure, narrowest_cell
 from .table import Table, check_size, row_angles, tabulate
 from .warp import Warp
 
@@ -95,7 +96,7 @@ def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Cho
     """The table of a given size; HairlutError where some cell is too narrow for float32 with every e."""
     check_size(width, height)
     exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, BETWEEN))
-    tables = {e: _usable(lobe, exact, width, e, cell) for e in EXPONENTS}
+    tables = {e: _usable(lobe, exact, width, e, cell, ON_ROWS) for e in EXPONENTS}
     tables = {e: table for e, table in tables.items() if table}
     if not tables:
         raise HairlutError(
@@ -108,10 +109,11 @@ def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Cho
     )
 
 
-def _usable(lobe: Lobe, exact: Exact, width: int, exponent: int, cell: Cell) -> Table | None:
-    """The table whose rows are every (BETWEEN + 1)th of the exact lobe's; None if a cell is flat or too
-    narrow for float32."""
-    rows = slice(None, None, BETWEEN + 1)
+def _usable(
+    lobe: Lobe, exact: Exact, width: int, exponent: int, cell: Cell, rows: slice = ALL
+) -> Table | None:
+    """The table whose rows are these of the exact lobe's; None if a cell is flat or too narrow for
+    float32."""
     try:
         table = tabulate(lobe, exact, width, Warp("quartic", 2.0**exponent), cell, rows)
     except HairlutError:  # flat cells
@@ -155,17 +157,13 @@ class _Trials:
     def _exact(self, height: int, between: int) -> Exact:
         return exact_at(self.lobe, inclinations(self.lobe.theta_r_range, height, between))
 
-    def table(self, width: int, height: int, exponent: int) -> Table:
-        return tabulate(self.lobe, self.rows(height), width, Warp("quartic", 2.0**exponent), self.cell)
+    def table(self, width: int, height: int, exponent: int) -> Table | None:
+        return _usable(self.lobe, self.rows(height), width, exponent, self.cell)
 
     def _variance(self, width: int, height: int, exponent: int, between: int) -> float:
         """V at the worst inclination; infinite where a cell is flat or too narrow for float32."""
-        self.rows(height)  # what is wrong with the lobe itself is raised here
-        try:
-            table = self.table(width, height, exponent)
-        except HairlutError:  # flat cells
-            return np.inf
-        if narrowest_cell(table.texels) < MIN_STEPS:
+        table = self.table(width, height, exponent)
+        if not table:
             return np.inf
         return measure(table, self.lobe, between, False, self.exact(height, between)).relative_variance
 

@@ -15,7 +15,7 @@ from .errors import HairlutError
 from .exact import exact_at
 from .export import TABLES
 from .lobes import MODELS, Array, Lobe, Model
-from .measure import BETWEEN, Errors, inclinations, measure
+from .measure import ON_ROWS, Errors, inclinations, measure
 from .modelfile import load
 from .table import Table
 
@@ -84,9 +84,8 @@ def verify_file(path: Path, models: dict[str, Model]) -> Report:
         report.problems.append(str(error).removeprefix(f"{path}: "))
         return report
     report.size = f"{table.width}x{table.height}"
-    exact = exact_at(lobe, inclinations(table.theta_r_range, table.height, BETWEEN))
-    rows = slice(None, None, BETWEEN + 1)
-    report.problems += _texels(table, exact.quantiles(*table.warp.knots(table.width), rows))
+    exact = exact_at(lobe, inclinations(table.theta_r_range, table.height))
+    report.problems += _texels(table, exact.quantiles(*table.warp.knots(table.width), ON_ROWS))
     errors = measure(table, lobe, exact=exact)
     report.measured = errors.summary()
     report.problems += _claims(errors, report.claimed)

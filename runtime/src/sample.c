@@ -1,9 +1,11 @@
 /* One direction at a time: sample, pdf and invert of both lobes. */
 #include "lobes.h"
 
+/* theta_i as it was drawn: its cosine does not wait until it is moved into the domain. */
 static hairlut_sample finish(const hairlut_axis *axis, float theta_i, float phi_i, float pdf)
 {
-    const hairlut_sample s = {hairlut_axis_inside(axis, theta_i), phi_i, pdf, hairlut_per_steradian(pdf, theta_i)};
+    hairlut_sample s = hairlut_finish(theta_i, phi_i, pdf);
+    s.theta_i = hairlut_axis_inside(axis, theta_i);
     return s;
 }
 

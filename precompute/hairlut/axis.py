@@ -11,17 +11,16 @@ AXIS = ("columns", "height", "warp", "row_origin", "row_scale", "low", "high", "
 def axis_numbers(table: Table) -> list[float]:
     """The numbers named in AXIS, each one that a 32-bit float holds.
 
-    warp                    1 quartic, 0 uniform
+    warp                    1 octaves, 0 uniform
     row_origin, row_scale   row position = (theta_r - row_origin) * row_scale
     low, high               the domain
-    e, f0, k                (m + e)^(1/4) = f0 + k c (uniform: m = k c) for m = min(u, 1-u) and the column c,
+    e, f0, k                F(m + e) = f0 + k c (uniform: m = k c) for m = min(u, 1-u) and the column c,
                             counted from the nearer end
     limit                   bound of a cell's curvature
     """
     low, high = np.float32(table.theta_r_range).astype(float)  # the floats that the runtime would be given
     e = float(np.float32(table.warp.e))
-    shape = [table.width, table.height, int(table.warp.name == "quartic")]
+    shape = [table.width, table.height, int(table.warp.name == "octaves")]
     rows = [low, (table.height - 1) / (high - low), *table.domain]
-    f0 = np.sqrt(np.sqrt(np.float32(table.warp.e if shape[2] else 0)))  # as a draw rounds it
-    warp = [e, f0, Warp(table.warp.name, e).scale(table.width)[1], table.cell.limit]
+    warp = [e, *Warp(table.warp.name, e).scale(table.width), table.cell.limit]
     return np.float32([*shape, *rows, *warp]).astype(float).tolist()

@@ -16,12 +16,14 @@ from . import __version__, arrays, exr
 from .axis import AXIS, axis_numbers
 from .errors import HairlutError
 from .files import write_whole
+from .interpolant import curvatures
 from .table import Table
+from .warp import Warp
 
 TABLES = ("direct_theta", "direct_phi", "multiple_theta")
 AZIMUTHS = {"sum": "HAIRLUT_AZIMUTH_SUM", "difference": "HAIRLUT_AZIMUTH_DIFFERENCE"}
 PIVOTS, LINE = 16, 16  # runtime/src/internal.h
-WARPS = {"quartic": "HAIRLUT_WARP_QUARTIC", "uniform": "HAIRLUT_WARP_UNIFORM"}
+WARPS = {"octaves": "HAIRLUT_WARP_OCTAVES", "uniform": "HAIRLUT_WARP_UNIFORM"}
 
 
 def export(paths: Sequence[Path], target: str, out: Path) -> Path:
@@ -106,12 +108,13 @@ def _identifier(name: str) -> str:
     return re.sub(r"\W", "_", name, flags=re.ASCII)
 
 
-Arrays = dict[tuple[bytes, int, float], tuple[str, Table]]
+Content = tuple[bytes, int, str, str]
+Arrays = dict[Content, tuple[str, Table]]
 
 
-def _content(table: Table) -> tuple[bytes, int, float]:
+def _content(table: Table) -> Content:
     """What a table's arrays follow from."""
-    return table.texels.tobytes(), table.width, table.cell.limit
+    return table.texels.tobytes(), table.width, str(table.warp), str(table.cell)
 
 
 def _arrays(models: Sequence[Sequence[Table]]) -> Arrays:
@@ -149,20 +152,21 @@ def _rows(table: Table) -> np.ndarray:
 
 
 def _cells(table: Table) -> np.ndarray:
-    """The cells, as the runtime stores them, with its float arithmetic: from both ends to the
-    middle, the rows of each."""
-    x = np.concatenate([table.texels, table.texels[-1:]])
-    d = np.diff(x, axis=1)
-    c = np.empty_like(d)
-    c[:, 1:-1] = np.float32(0.25) * (d[:, :-2] - d[:, 2:])
-    c[:, 0], c[:, -1] = d[:, 0] - d[:, 1], d[:, -2] - d[:, -1]
-    bound = np.float32(table.cell.limit) * d
-    c = np.clip(c, -bound, bound)
-    half = table.width // 2 + 1
-    low = np.stack([x[:, :-1], d + c, c], axis=-1)[:, :half]
-    high = np.stack([x[:, 1:], c - d, c], axis=-1)[:, ::-1][:, :half]
-    cells = np.concatenate([low, high], axis=1).swapaxes(0, 1)
-    return np.pad(cells, ((0, 0), (0, 0), (0, 1))).reshape(2 * half, -1)
+    """The cells, as the runtime stores them, with its arithmetic: from both ends to the middle, the rows of
+    each. A cell is x0, a, c, u0 with x = x0 + d (a - c d), d = min(u, 1-u) - u0, about its nearer knot."""
+    x = np.concatenate([table.texels, table.texels[-1:]]).astype(float)
+    half, limit = table.width // 2 + 1, float(np.float32(table.cell.limit))
+    return np.concatenate([_half(end, table, half, limit) for end in (x, x[:, ::-1])])
+
+
+def _half(x: np.ndarray, table: Table, half: int, limit: float) -> np.ndarray:
+    """The first cells of rows that are counted from one of their ends."""
+    u = Warp(table.warp.name, float(np.float32(table.warp.e))).u(table.width).astype(np.float32).astype(float)
+    h = np.diff(u)
+    c = curvatures(x, h, limit)
+    parts = x[:, :-1], (np.diff(x, axis=1) + c) / h, c / (h * h), u[:-1]
+    cells = np.stack(np.broadcast_arrays(*parts), axis=-1)
+    return cells[:, :half].swapaxes(0, 1).astype(np.float32).reshape(half, -1)
 
 
 def _definitions(name: str, table: Table) -> str:

@@ -1,12 +1,13 @@
 """How a table is read (luts/FORMAT.md): between its rows and columns, and backwards. In double precision.
 
-Rows are blended linearly in theta_r. Within cell i of the blended row X, at the fraction f of the way from
-X_i to X_(i+1),
+Each cell of a row is a parabola in u. With X and D the cell's low end and width in x, h its width in u and f
+the fraction of it at which u lies,
 
-    x(f) = X_i + f (D + C (1 - f)),    dx/df = D + C (1 - 2f),    density = (du/dcolumn) / (dx/df),
+    x(f) = X + f (D + C (1 - f)),    dx/df = D + C (1 - 2f),    density = h / (dx/df).
 
-with the cell's width D, and its curvature C from the widths of the cells beside it, kept below limit * D so
-that the slope stays positive.
+The curvature C comes from the densities at the cell's two knots, and a density at a knot from the mean
+densities of the two cells that meet there, blended linearly in x. C is kept below limit * D, so that the
+slope stays positive. X, D and C of two neighbouring rows are blended linearly in theta_r.
 """
 
 from dataclasses import dataclass
@@ -26,7 +27,7 @@ MAX_LIMIT = 0.95
 
 @dataclass(frozen=True)
 class Cell:
-    """name: "quadratic" or "linear"; limit: bound of the curvature, relative to the width; 0 for linear."""
+    """name: "parabola" or "linear"; limit: bound of the curvature, relative to the width; 0 for linear."""
 
     name: str
     limit: float = 0.0
@@ -34,33 +35,41 @@ class Cell:
     def __post_init__(self) -> None:
         if self.name == "linear" and self.limit == 0.0:
             return
-        if self.name != "quadratic":
-            raise HairlutError(f"cell {self} is not known: expected 'quadratic limit=NUMBER' or 'linear'")
+        if self.name != "parabola":
+            raise HairlutError(f"cell {self} is not known: expected 'parabola limit=NUMBER' or 'linear'")
         if not 0.0 < self.limit <= MAX_LIMIT:
             raise HairlutError(f"cell {self}: expected a limit above 0, up to {MAX_LIMIT}")
 
     def __str__(self) -> str:
-        return f"{self.name} limit={self.limit!r}" if self.name == "quadratic" else self.name
+        return f"{self.name} limit={self.limit!r}" if self.name == "parabola" else self.name
 
     @classmethod
     def parse(cls, text: str) -> "Cell":
-        """From "linear" or "quadratic limit=NUMBER", as in a file's header."""
-        return cls(*parameter.parse(text, "cell", "limit", "'quadratic limit=NUMBER' or 'linear'"))
+        """From "linear" or "parabola limit=NUMBER", as in a file's header."""
+        return cls(*parameter.parse(text, "cell", "limit", "'parabola limit=NUMBER' or 'linear'"))
 
 
-def padded(texels: Array) -> Array:
-    """(H, W+2) texels and one more at both ends, by which end cells get the curvature D - D_neighbour."""
-    x = np.asarray(texels, float)
-    first = x[:, 0] - 4 * (x[:, 1] - x[:, 0]) + 3 * (x[:, 2] - x[:, 1])
-    last = x[:, -1] + 4 * (x[:, -1] - x[:, -2]) - 3 * (x[:, -2] - x[:, -3])
-    return np.concatenate([first[:, None], x, last[:, None]], axis=1)
+def curvatures(x: Array, h: Array, limit: float) -> Array:
+    """(H, W-1) curvature of every cell of the rows x (H, W), h (W-1,) being the cells' widths in u."""
+    d = np.diff(x, axis=1)
+    before, after = d[:, :-1], d[:, 1:]
+    slope = (before + after) / (after * h[:-1] / before + before * h[1:] / after)  # dx/du at the inner knots
+    c = np.empty_like(d)
+    c[:, 1:-1] = h[1:-1] * (slope[:, :-1] - slope[:, 1:]) / 2
+    c[:, 0] = (
+        d[:, 0] - h[0] * d[:, 1] / h[1]
+    )  # the inner end of an end cell has the mean slope of the next cell
+    c[:, -1] = h[-1] * d[:, -2] / h[-2] - d[:, -1]
+    bound = limit * abs(d)  # rows that are counted from their high end fall
+    return np.clip(c, -bound, bound)
 
 
 @dataclass(frozen=True)
 class Cells:
-    """The cells of a table at n viewer inclinations: low end x0, width d, curvature c, each (n, W-1)."""
+    """The cells of a table at n viewer inclinations: low end x0, width d, curvature c, each (n, W-1), and
+    their widths h (W-1,) in u."""
 
-    table: "Table"
+    h: Array
     x0: Array
     d: Array
     c: Array
@@ -73,13 +82,9 @@ class Cells:
         """(n, W-1, K) dx/df at the fractions f (K,) of every cell; always positive."""
         return _slope(self.d[..., None], self.c[..., None], np.asarray(f))
 
-    def du(self, f: Array) -> Array:
-        """(W-1, K) du/dcolumn at the fractions f (K,) of every cell."""
-        return self.du_at(np.arange(self.table.width - 1)[:, None], np.asarray(f, float))
-
     def density(self, f: Array) -> Array:
         """(n, W-1, K) density of the table, per rad, at the fractions f (K,) of every cell."""
-        return self.du(f) / self.slope(f)
+        return self.h[:, None] / self.slope(f)
 
     def angle_at(self, n: Array, i: Array, f: Array) -> Array:
         """Angles at the fractions f of the cells i of the inclinations number n, all broadcasting."""
@@ -102,10 +107,6 @@ class Cells:
         slope = np.sqrt(np.maximum((d + c) ** 2 - 4 * c * distance, 0.0))
         return np.clip(2 * distance / (d + c + slope), 0.0, 1.0), slope
 
-    def du_at(self, i: Array, f: Array) -> Array:
-        """du/dcolumn at the fractions f of the cells i, broadcast against each other."""
-        return self.table.warp.du(i, f, self.table.width)
-
 
 def _angle(x0: Array, d: Array, c: Array, f: Array) -> Array:
     return x0 + f * (d + c * (1 - f))
@@ -117,19 +118,16 @@ def _slope(d: Array, c: Array, f: Array) -> Array:
 
 def cells(table: "Table", theta_r: Array) -> Cells:
     """The blended cells at theta_r (n,); theta_r outside the table's range is clamped, NaN to its low end."""
-    rows = padded(table.texels)
     low, high = table.theta_r_range
     last = table.height - 1
     r = np.clip(np.nan_to_num(np.atleast_1d(theta_r).astype(float), nan=low), low, high)
     r = np.clip((r - low) / (high - low) * last, 0, last)
     j = np.minimum(r.astype(int), last - 1)
     t = (r - j)[:, None]
-    widths = np.diff(rows, axis=1)
-    before, d, after = widths[:, :-2], widths[:, 1:-1], widths[:, 2:]
-    bound = table.cell.limit * d
-    c = np.clip((before - after) / 4, -bound, bound)
-    x0, d, c = ((1 - t) * part[j] + t * part[j + 1] for part in (rows[:, 1:-2], d, c))
-    return Cells(table=table, x0=x0, d=d, c=c)
+    x = table.texels.astype(float)
+    h = table.warp.widths(table.width)
+    parts = x[:, :-1], np.diff(x, axis=1), curvatures(x, h, table.cell.limit)
+    return Cells(h, *((1 - t) * part[j] + t * part[j + 1] for part in parts))
 
 
 def sample(table: "Table", theta_r: Array, u: Array) -> tuple[Array, Array]:
@@ -145,7 +143,7 @@ def sample_tail(table: "Table", theta_r: Array, m: Array, upper: Array) -> tuple
     read = cells(table, theta_r)
     i, f = table.warp.place(m, upper, table.width)
     n = np.arange(len(i))
-    return read.angle_at(n, i, f), read.du_at(i, f) / read.slope_at(n, i, f)
+    return read.angle_at(n, i, f), read.h[i] / read.slope_at(n, i, f)
 
 
 def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Array]:
@@ -155,18 +153,12 @@ def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Arra
     return i, *read.fraction_at(np.arange(len(i)), i, x)
 
 
-def _nearer_end(table: "Table", i: Array, f: Array) -> tuple[Array, Array]:
-    low, high = i + f, (table.width - 2 - i) + (1 - f)
-    return np.minimum(low, high), high < low
-
-
 def pdf(table: "Table", theta_r: Array, x: Array) -> Array:
     """(n,) density, per rad, with which sample draws x (n,) at theta_r (n,); 0 outside the domain."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
-    i, f, slope = locate(table, theta_r, np.nan_to_num(x))
-    c, _ = _nearer_end(table, i, f)
+    i, _, slope = locate(table, theta_r, np.nan_to_num(x))
     low, high = np.float32(table.domain)
-    return np.where((x >= low) & (x <= high), table.warp.slope(c, table.width) / slope, 0.0)
+    return np.where((x >= low) & (x <= high), table.warp.widths(table.width)[i] / slope, 0.0)
 
 
 def invert(table: "Table", theta_r: Array, x: Array) -> Array:
@@ -179,5 +171,10 @@ def invert_tail(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array]
     """(m, upper), each (n,): u = m, or u = 1 - m where upper."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
     i, f, _ = locate(table, theta_r, x)
-    c, upper = _nearer_end(table, i, f)
-    return table.warp.unfold(c, table.width), upper
+    width = table.width
+    h, m = table.warp.widths(width)[i], table.warp.knots(width)[0]
+    low, high = m[i] + f * h, m[i + 1] + (1 - f) * h
+    upper = 2 * i + 1 > width - 1  # the cell lies above u = 1/2; the middle one is counted from the low end
+    folded = np.where(upper, high, low)
+    beyond = folded > 0.5
+    return np.where(beyond, 1 - folded, folded), upper ^ beyond

@@ -214,8 +214,8 @@ def _panels(read: Cells, knots: Array) -> tuple[Array, Array, Array, Array]:
 
 
 def _weights(read: Cells, exact: Exact, row: Array, n: Array, i: Array, f: Array) -> tuple[Array, Array]:
-    """(f/q, du/dcolumn) at the fractions f (K, P) of the cells n, i (P,), between two knots each."""
-    du = read.du_at(i, f)
+    """(f/q, du/df) at the fractions f (K, P) of the cells n, i (P,), between two knots each."""
+    du = read.h[i]
     return exact.density(read.angle_at(n, i, f), row[n]) * read.slope_at(n, i, f) / du, du
 
 

@@ -31,9 +31,9 @@ from .warp import Warp
 
 DEFAULT_TOLERANCE = 1e-4
 DEFAULT_LIMIT = 256
-CELL = Cell("quadratic", 0.9)
+CELL = Cell("parabola", 0.95)
 MIN_STEPS = 2.0
-EXPONENTS = range(-30, 1)  # of e
+EXPONENTS = range(-34, 1)  # of e
 FIRST_EXPONENT = -16
 PROBE_HEIGHT = 33  # rows on which a width alone is judged
 WIDEST = 2
@@ -115,7 +115,7 @@ def _usable(
     """The table whose rows are these of the exact lobe's; None if a cell is flat or too narrow for
     float32."""
     try:
-        table = tabulate(lobe, exact, width, Warp("quartic", 2.0**exponent), cell, rows)
+        table = tabulate(lobe, exact, width, Warp("octaves", 2.0**exponent), cell, rows)
     except HairlutError:  # flat cells
         return None
     return table if narrowest_cell(table.texels) >= MIN_STEPS else None

@@ -21,13 +21,14 @@ from .interpolant import Cell
 from .invert import invert
 from .lobes import FITTED, HALF_PI, PRINTED, Array, Lobe
 from .measure import Errors, flat_cells, inclinations, measure, narrowest_cell
+from .size import CELL
 from .table import Table, row_angles
 from .warp import Warp
 
 LOBES = (PRINTED.direct_theta, FITTED.direct_theta, FITTED.direct_phi, FITTED.multiple_theta)
-LINEAR, CURVED = Cell("linear"), Cell("quadratic", 0.9)
+LINEAR, CURVED = Cell("linear"), CELL
 CELLS = (LINEAR, CURVED)
-EXPONENTS = range(-26, -7)
+EXPONENTS = range(-34, -7)
 LEAST_STEPS = 2.0
 QUANTILE = 2.0**-25
 
@@ -37,10 +38,10 @@ QUANTILE = 2.0**-25
 
 
 class Symmetric(Warp):
-    """A warp given by an increasing function F of the smaller tail m, its inverse and its derivative."""
+    """A warp given by an increasing function F of the smaller tail m, and its inverse."""
 
-    def __init__(self, label: str, forward: Callable, inverse: Callable, derivative: Callable):
-        for name, value in {"name": label, "e": 0.0, "F": forward, "G": inverse, "dF": derivative}.items():
+    def __init__(self, label: str, forward: Callable, inverse: Callable):
+        for name, value in {"name": label, "e": 0.0, "F": forward, "G": inverse}.items():
             object.__setattr__(self, name, value)
 
     def _scale(self, width: int) -> tuple[float, float]:
@@ -55,9 +56,6 @@ class Symmetric(Warp):
         low, k = self._scale(width)
         return np.where(c == 0, 0.0, np.clip(self.G(low + k * np.asarray(c, float)), 0.0, 0.5))
 
-    def slope(self, c: Array, width: int) -> Array:
-        return self._scale(width)[1] / self.dF(self.unfold(c, width))
-
 
 class OneSided(Warp):
     """Columns uniform in u^(1/4): dense at the lower end alone, with a slope that vanishes there."""
@@ -66,20 +64,23 @@ class OneSided(Warp):
         object.__setattr__(self, "name", "one-sided power u^(1/4)")
         object.__setattr__(self, "e", 0.0)
 
+    def u(self, width: int) -> Array:
+        return (np.arange(width) / (width - 1)) ** 4
+
+    def knots(self, width: int) -> tuple[Array, Array]:
+        u = self.u(width)
+        return np.minimum(u, 1 - u), u > 0.5
+
     def unfold(self, c: Array, width: int) -> Array:
         return (np.asarray(c, float) / (width - 1)) ** 4
 
-    def knots(self, width: int) -> tuple[Array, Array]:
-        u = self.unfold(np.arange(width), width)
-        return np.minimum(u, 1 - u), u > 0.5
-
-    def du(self, i: Array, f: Array, width: int) -> Array:
-        return 4 * ((i + f) / (width - 1)) ** 3 / (width - 1)
+    def widths(self, width: int) -> Array:
+        return np.diff(self.u(width))
 
     def place(self, m: Array, upper: Array, width: int) -> tuple[Array, Array]:
-        c = np.where(upper, 1 - m, m) ** 0.25 * (width - 1)
-        i = np.minimum(c.astype(int), width - 2)
-        return i, c - i
+        u = np.where(upper, 1 - m, m)
+        i = np.clip(np.searchsorted(self.u(width), u, side="right") - 1, 0, width - 2)
+        return i, (u - self.u(width)[i]) / self.widths(width)[i]
 
 
 def two_sided_power(e: float) -> Warp:
@@ -91,7 +92,7 @@ def two_sided_power(e: float) -> Warp:
     def derivative(m):
         return 0.25 * ((m + e) ** -0.75 + (1 - m + e) ** -0.75)
 
-    return Symmetric("two-sided power", forward, _numerical_inverse(forward, derivative, e), derivative)
+    return Symmetric("two-sided power", forward, _numerical_inverse(forward, derivative, e))
 
 
 def _numerical_inverse(forward: Callable, derivative: Callable, e: float) -> Callable:
@@ -114,50 +115,53 @@ def logit(e: float) -> Warp:
         ratio = np.exp(y)
         return ((1 + e) * ratio - e) / (1 + ratio)
 
-    return Symmetric(
-        "logit",
-        lambda m: np.log((m + e) / (1 - m + e)),
-        inverse,
-        lambda m: (1 + 2 * e) / ((m + e) * (1 - m + e)),
-    )
+    return Symmetric("logit", lambda m: np.log((m + e) / (1 - m + e)), inverse)
 
 
 def probit(e: float) -> Warp:
     """Columns uniform in the normal quantile of (u+e)/(1+2e)."""
     share = 1 + 2 * e
-    return Symmetric(
-        "probit",
-        lambda m: ndtri((m + e) / share),
-        lambda y: ndtr(y) * share - e,
-        lambda m: np.sqrt(2 * np.pi) * np.exp(ndtri((m + e) / share) ** 2 / 2) / share,
-    )
+    return Symmetric("probit", lambda m: ndtri((m + e) / share), lambda y: ndtr(y) * share - e)
+
+
+def power(exponent: float) -> Callable[[float], Warp]:
+    """Columns uniform in (m+e)^exponent."""
+    return lambda e: Symmetric("power", lambda m: (m + e) ** exponent, lambda y: y ** (1 / exponent) - e)
+
+
+def shifted(bits: int) -> Callable[[float], Warp]:
+    """Columns uniform in what the bits of a float make that are shifted right by so many: near a root of
+    degree 2^bits, straight in each octave. No shift: the same number of columns in every octave."""
+    parts = 2**bits
+
+    def forward(s):
+        mantissa, exponent = np.frexp(s)
+        q, r = np.divmod(exponent + parts - 2, parts)
+        g = (r + 2 * mantissa - 1) / parts
+        return q + g if bits == 0 else np.ldexp(1 + g, q)
+
+    def inverse(y):
+        mantissa, exponent = (y - np.floor(y), np.floor(y)) if bits == 0 else np.frexp(y)
+        q, g = (exponent, mantissa) if bits == 0 else (exponent - 1, 2 * mantissa - 1)
+        r = np.floor(parts * g)
+        return np.exp2(parts * (q - 1.0) + r + 1) * (1 + parts * g - r)
+
+    return lambda e: Symmetric("shifted", lambda m: forward(m + e), lambda y: inverse(y) - e)
 
 
 def octaves(e: float) -> Warp:
-    """The same number of columns in every octave of m + e, evenly: the bits of a float, read as an
-    integer."""
-
-    def forward(m):
-        mantissa, exponent = np.frexp(m + e)
-        return exponent + 2 * mantissa - 2
-
-    def inverse(y):
-        floor = np.floor(y)
-        return (1 + y - floor) * np.exp2(floor) - e
-
-    return Symmetric("float's bits", forward, inverse, lambda m: np.exp2(1.0 - np.frexp(m + e)[1]))
-
-
-def quartic(e: float) -> Warp:
-    return Warp("quartic", e)
+    return Warp("octaves", e)
 
 
 FAMILIES: dict[str, Callable[[float], Warp]] = {
     "two-sided power (u+e)^(1/4) - (1-u+e)^(1/4)": two_sided_power,
     "regularised logit log((u+e)/(1-u+e))": logit,
     "regularised probit": probit,
-    "knots per octave of m+e (float's bits)": octaves,
-    "quartic (m+e)^(1/4), folded at 1/2": quartic,
+    "quartic (m+e)^(1/4), two square roots": power(1 / 4),
+    "knots evenly in every octave of m+e": shifted(0),
+    "bits of m+e shifted by one: near a square root": shifted(1),
+    "octaves, bits of m+e shifted by two": octaves,
+    "bits of m+e shifted by three: near an eighth root": shifted(3),
 }
 FIXED: dict[str, Warp] = {"uniform in u": Warp("uniform"), "one-sided power u^(1/4)": OneSided()}
 
@@ -260,12 +264,11 @@ def spline_warp(log_slopes: Array, e: float) -> Warp:
         "own spline",
         lambda m: np.interp(m, grid, total),
         lambda y: np.interp(y, total, grid),
-        lambda m: np.interp(m, grid, slope),
     )
 
 
 def own_warp(lobe: Lobe, width: int, cell: Cell, e: float = 2.0**-17, rounds: int = 2) -> Warp:
-    """The best smooth monotone warp found for this lobe alone, starting from the quartic one's slope."""
+    """The best smooth monotone warp found for this lobe alone, starting from the fourth root's slope."""
 
     def cost(log_slopes: Array) -> float:
         table = tabulate_any(lobe, width, BOUND_HEIGHT, spline_warp(log_slopes, e), cell)
@@ -305,12 +308,21 @@ def bounds(width: int, height: int) -> Iterator[Result]:
 
 
 def ends(width: int, height: int) -> Iterator[Result]:
-    """The quartic warp, curved cells: the outermost knots at the domain's ends or at the 2^-25 quantiles."""
+    """The shipped warp, curved cells: the outermost knots at the domain's ends or at the 2^-25 quantiles."""
     for lobe in LOBES:
-        warp, e = best_of(quartic, lobe, width, height, CURVED)
+        warp, e = best_of(octaves, lobe, width, height, CURVED)
         for name, outermost in (("domain's end", 0.0), ("2^-25 quantile", QUANTILE)):
             table = tabulate_any(lobe, width, height, warp, CURVED, outermost)
             yield replace(result(name, table, lobe), e=e)
+
+
+def limits(width: int, height: int) -> Iterator[Result]:
+    """The bound of a curvature, relative to the cell's width: what the end cells' weights and V owe to it."""
+    for lobe in LOBES:
+        warp, e = best_of(octaves, lobe, width, height, CURVED)
+        for limit in (0.5, 0.8, 0.9, 0.95):
+            table = tabulate_any(lobe, width, height, warp, Cell("parabola", limit))
+            yield replace(result(f"limit {limit:g}", table, lobe, quantiles=False), e=e)
 
 
 def sine_rows(t: Array) -> Array:
@@ -336,7 +348,7 @@ def rows(width: int, height: int) -> Iterator[Result]:
     """Even against uneven rows."""
     spacings = {"even": None, "sine: dense at +-90 deg": sine_rows, "tangent: dense at 0": tangent_rows}
     for lobe in LOBES:
-        warp, e = best_of(quartic, lobe, width, height, CURVED)
+        warp, e = best_of(octaves, lobe, width, height, CURVED)
         for name, spacing in spacings.items():
             moved = moved_rows(lobe, spacing) if spacing else lobe
             table = tabulate_any(moved, width, height, warp, CURVED)
@@ -347,7 +359,7 @@ def half_range(width: int, height: int) -> Iterator[Result]:
     """direct_phi, even in theta_r, with rows over the whole range, or half of them over [0, pi/2]."""
     lobe = FITTED.direct_phi
     half = replace(lobe, theta_r_range=(0.0, HALF_PI))
-    warp, e = best_of(quartic, lobe, width, height, CURVED)
+    warp, e = best_of(octaves, lobe, width, height, CURVED)
     for name, each, count in (("whole range", lobe, height), ("half range", half, height // 2)):
         table = tabulate_any(each, width, count, warp, CURVED)
         yield replace(result(f"{name}, {count} rows", table, each, quantiles=False), e=e)
@@ -403,7 +415,7 @@ def encodings(sides: tuple[int, ...]) -> Iterator[tuple[int, Result]]:
 def _encoded(name: str, encode: Callable, lobe: Lobe, side: int) -> Result:
     trials = []
     for exponent in EXPONENTS[::2]:
-        table = tabulate_any(lobe, side, side, quartic(2.0**exponent), CURVED)
+        table = tabulate_any(lobe, side, side, octaves(2.0**exponent), CURVED)
         table = replace(table, texels=encode(table.texels, lobe.domain))
         trials.append(result(name, table, lobe, quantiles=False))
     return min(trials, key=lambda trial: (trial.flat, trial.errors.relative_variance))
@@ -414,10 +426,14 @@ def _encoded(name: str, encode: Callable, lobe: Lobe, side: int) -> Result:
 
 
 def sizes(sides: tuple[int, ...]) -> Iterator[tuple[int, Result]]:
-    """V of theta of the direct lobe against the side of a square table: uniform and linear, quartic and
-    linear, quartic and curved."""
-    designs = (("uniform, linear cells", None, LINEAR), ("quartic, linear cells", quartic, LINEAR),
-               ("quartic, curved cells", quartic, CURVED))  # fmt: skip
+    """V of theta of the direct lobe against the side of a square table: uniform and linear, octaves and
+    linear, three bits and curved, octaves and curved."""
+    designs = (
+        ("uniform, linear cells", None, LINEAR),
+        ("octaves, linear cells", octaves, LINEAR),
+        ("three bits, curved cells", shifted(3), CURVED),
+        ("octaves, curved cells", octaves, CURVED),
+    )
     for side in sides:
         for name, family, cell in designs:
             for lobe in LOBES[:2]:

@@ -11,7 +11,7 @@ from hairlut.warp import Warp
 
 THETA_R = np.linspace(-HALF_PI, HALF_PI, 9)
 PHI_R = np.linspace(-np.pi, np.pi, 25)
-KNOTS = Warp("quartic", 2.0**-20).knots(64)
+KNOTS = Warp("octaves", 2.0**-20).knots(64)
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -107,7 +107,7 @@ def test_a_table_costs_what_its_measurement_by_integration_says(lobe, exponent):
     by_integration = replace(lobe, exact=None)
     exact = exact_at(lobe, np.linspace(*lobe.theta_r_range, 73))
     table = tabulate(
-        lobe, exact, 48, Warp("quartic", 2.0**exponent), Cell("quadratic", 0.9), slice(None, None, 2)
+        lobe, exact, 48, Warp("octaves", 2.0**exponent), Cell("parabola", 0.9), slice(None, None, 2)
     )
     expected = measure(table, by_integration, between=1)
     found = measure(table, lobe, exact=exact)

@@ -54,15 +54,18 @@ def test_cells_are_those_of_the_interpolant_from_both_ends(source, shipped):
     stored = array(source, table, "cells").reshape(2, half, table.height + 1, 4)
     exact = interpolant.cells(table, with_last_twice(table.theta_r))
     step = np.spacing(np.float32(np.abs(table.domain).max()))
+    u, h = table.warp.u(table.width), table.warp.widths(table.width)
     for k in range(half):
-        for side, i, x0, sign in ((0, k, exact.x0, 1), (1, table.width - 2 - k, exact.x0 + exact.d, -1)):
-            at, a, c, unused = stored[side, k].astype(float).T
-            assert np.abs(at - x0[:, i]).max() <= step / 2
+        for side, i, nearer, sign in ((0, k, exact.x0, 1), (1, table.width - 2 - k, exact.x0 + exact.d, -1)):
+            at, a, c, u0 = stored[side, k].astype(float).T
+            assert np.abs(at - nearer[:, i]).max() <= step / 2
+            assert (u0 == np.float32(u[k])).all()
             assert (np.sign(a) == sign).all()
-            assert np.abs(c - exact.c[:, i]).max() <= 3 * step  # the limit is a float too
-            rounding = 4 * step + np.spacing(np.abs(a).astype(np.float32)) / 2
-            assert (np.abs(a - sign * exact.d[:, i] - exact.c[:, i]) <= rounding).all()
-            assert (unused == 0).all()
+            share = 4e-7 * u[k + 1] / h[i]  # of the cell's width in u that two rounded knots may be off
+            slope, bend = (sign * exact.d[:, i] + exact.c[:, i]) / h[i], exact.c[:, i] / h[i] ** 2
+            widest = exact.d[:, i].max()
+            np.testing.assert_allclose(a, slope, rtol=1e-6, atol=3 * share * widest / h[i])
+            np.testing.assert_allclose(c, bend, rtol=1e-6, atol=3 * share * widest / h[i] ** 2)
 
 
 def test_tables_of_the_same_content_stand_in_it_once(source):

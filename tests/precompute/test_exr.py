@@ -18,7 +18,7 @@ from hairlut.warp import Warp
 
 @pytest.fixture(scope="module")
 def table():
-    return bake_table(FITTED.direct_phi, 12, 5, Warp("quartic", 2.0**-12), Cell("quadratic", 0.9))
+    return bake_table(FITTED.direct_phi, 12, 5, Warp("octaves", 2.0**-12), Cell("parabola", 0.9))
 
 
 @pytest.fixture
@@ -42,8 +42,8 @@ def rewrite(path, change=None, pixels=None, drop=None):
         file.write(str(path))
 
 
-@pytest.mark.parametrize("warp", [Warp("uniform"), Warp("quartic", 2.0**-14), Warp("quartic", 0.1)], ids=str)
-@pytest.mark.parametrize("cell", [Cell("linear"), Cell("quadratic", 0.9)], ids=str)
+@pytest.mark.parametrize("warp", [Warp("uniform"), Warp("octaves", 2.0**-14), Warp("octaves", 0.1)], ids=str)
+@pytest.mark.parametrize("cell", [Cell("linear"), Cell("parabola", 0.9)], ids=str)
 @pytest.mark.parametrize("size", [(4, 2), (33, 7)])
 def test_round_trip(tmp_path, warp, cell, size):
     for lobe in FITTED.lobes:
@@ -73,8 +73,8 @@ def test_header_is_what_the_format_page_says(path, table):
     assert header["hairlut.unit"] == "rad"
     assert header["hairlut.theta_r_range"] == "-1.5707963267948966 1.5707963267948966"
     assert header["hairlut.domain"] == "0.0 6.283185307179586"
-    assert header["hairlut.warp"] == "quartic e=0.000244140625"
-    assert header["hairlut.cell"] == "quadratic limit=0.9"
+    assert header["hairlut.warp"] == "octaves e=0.000244140625"
+    assert header["hairlut.cell"] == "parabola limit=0.9"
     assert header["hairlut.error.relative_variance"] == "1.250e-03"
     np.testing.assert_array_equal([float(x) for x in header["hairlut.knots"].split()], table.warp.u(12))
     assert header["compression"] == OpenEXR.ZIP_COMPRESSION
@@ -142,9 +142,9 @@ def test_missing_attribute(path, name):
         ("theta_r_range", "1.0", "expected 2 finite numbers"),
         ("domain", "0.0 inf", "expected 2 finite numbers"),
         ("domain", "zero one", "expected 2 finite numbers"),
-        ("warp", "cubic", "is 'cubic' (warp cubic is not known: expected 'quartic"),
-        ("warp", "quartic e=0.5", None),
-        ("cell", "quadratic limit=2", "expected a limit"),
+        ("warp", "cubic", "is 'cubic' (warp cubic is not known: expected 'octaves"),
+        ("warp", "octaves e=0.5", None),
+        ("cell", "parabola limit=2", "expected a limit"),
         ("knots", "0.0 1.0", "expected 12 finite numbers"),
         ("log_mass", "0.0", "expected 5 finite numbers"),
         ("error.relative_variance", "small", "expected 1 finite numbers"),
@@ -154,7 +154,7 @@ def test_wrong_attribute(path, name, value, reason):
     rewrite(path, {f"hairlut.{name}": value})
     message = refusal(path)
     assert f"attribute hairlut.{'knots' if reason is None else name} " in message
-    assert (reason or "from the warp quartic e=0.5") in message
+    assert (reason or "from the warp octaves e=0.5") in message
 
 
 def test_knots_that_are_not_the_warps(path):
@@ -240,6 +240,6 @@ def test_a_failed_write_leaves_the_old_file(path, table, monkeypatch):
 
 
 def test_a_wrong_name_is_not_written(tmp_path):
-    table = bake_table(PRINTED.direct_theta, 8, 4, Warp("quartic", 2.0**-10), Cell("linear"))
+    table = bake_table(PRINTED.direct_theta, 8, 4, Warp("octaves", 2.0**-10), Cell("linear"))
     with pytest.raises(HairlutError, match=r"must be named direct_theta\.exr"):
         exr.write(tmp_path / "theta.exr", table)

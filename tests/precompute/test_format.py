@@ -20,23 +20,38 @@ class Reader:
         self.height, self.width = len(texels), len(texels[0])
         self.t0, self.t1 = map(float, attributes["hairlut.theta_r_range"].split())
         warp = attributes["hairlut.warp"].split(" e=")
-        self.e = float(warp[1]) if warp[0] == "quartic" else None
+        self.e = float(warp[1]) if warp[0] == "octaves" else None
         cell = attributes["hairlut.cell"].split(" limit=")
-        self.limit = float(cell[1]) if cell[0] == "quadratic" else 0.0
+        self.limit = float(cell[1]) if cell[0] == "parabola" else 0.0
         if self.e is not None:
-            self.f0 = self.e**0.25
-            self.k = 2 * ((0.5 + self.e) ** 0.25 - self.f0) / (self.width - 1)
+            self.f0 = self.curve(self.e)
+            self.k = 2 * (self.curve(self.e + 0.5) - self.f0) / (self.width - 1)
         else:
             self.f0, self.k = 0.0, 1 / (self.width - 1)
+        self.u = self.knots()
+        h = [b - a for a, b in pairwise(self.u)]
+        self.h = [h[min(i, self.width - 2 - i)] for i in range(self.width - 1)]  # 1 - u from the start
+
+    @staticmethod
+    def curve(s):
+        """F"""
+        n = math.floor(math.log2(s))
+        q, r = divmod(n + 3, 4)
+        return 2.0**q * (1 + (r + s / 2.0**n - 1) / 4)
+
+    @staticmethod
+    def curve_back(y):
+        """G"""
+        q = math.floor(math.log2(y))
+        quarters = 4 * (y / 2.0**q - 1)
+        r = math.floor(quarters)
+        return 2.0 ** (4 * q + r - 3) * (1 + quarters - r)
 
     def folded(self, m):
-        return m / self.k if self.e is None else ((m + self.e) ** 0.25 - self.f0) / self.k
+        return m / self.k if self.e is None else (self.curve(m + self.e) - self.f0) / self.k
 
     def unfolded(self, c):
-        return self.k * c if self.e is None else (self.f0 + self.k * c) ** 4 - self.e
-
-    def du_dc(self, c):
-        return self.k if self.e is None else 4 * self.k * (self.f0 + self.k * c) ** 3
+        return self.k * c if self.e is None else self.curve_back(self.f0 + self.k * c) - self.e
 
     def knots(self):
         lower = [self.unfolded(min(i, self.width - 1 - i)) for i in range(self.width)]
@@ -51,12 +66,20 @@ class Reader:
     def widths(self, j):
         return [b - a for a, b in pairwise(self.texels[j])]
 
+    def slope(self, j, n):
+        """S_n"""
+        before, after = self.widths(j)[n - 1 : n + 1]
+        h_before, h_after = self.h[n - 1 : n + 1]
+        return (before + after) / (after * h_before / before + before * h_after / after)
+
     def free_curvature(self, j, i):
         """Before it is clamped."""
-        d = self.widths(j)
+        d, h = self.widths(j), self.h
         if i == 0:
-            return d[0] - d[1]
-        return d[i - 1] - d[i] if i == self.width - 2 else (d[i - 1] - d[i + 1]) / 4
+            return d[0] - h[0] * d[1] / h[1]
+        if i == self.width - 2:
+            return h[i] * d[i - 1] / h[i - 1] - d[i]
+        return h[i] * (self.slope(j, i) - self.slope(j, i + 1)) / 2
 
     def row_cell(self, j, i):
         d = self.widths(j)[i]
@@ -72,13 +95,13 @@ class Reader:
         c = self.folded(m)
         column = c if u <= 0.5 else self.width - 1 - c
         i = min(math.floor(column), self.width - 2)
-        f = column - i
+        f = (u - self.u[i]) / self.h[i] if u <= 0.5 else 1 - (m - (1 - self.u[i + 1])) / self.h[i]
         start, d, curvature = self.cell(theta_r, i)
         x = start + f * (d + curvature * (1 - f))
         slope = d + curvature * (1 - 2 * f)
-        values = {"u": u, "m": m, "c": c, "column": column, "i": i, "f": f, "x": x}
+        values = {"u": u, "m": m, "c": c, "column": column, "i": i, "h": self.h[i], "f": f, "x": x}
         values |= {"X": start, "D": d, "C": curvature}
-        return values | {"dx/df": slope, "du/dc": self.du_dc(c), "q": self.du_dc(c) / slope}
+        return values | {"dx/df": slope, "q": self.h[i] / slope}
 
     def invert(self, theta_r, x):
         i = max(n for n in range(self.width - 1) if self.cell(theta_r, n)[0] <= x or n == 0)
@@ -86,11 +109,8 @@ class Reader:
         distance, s = x - start, d + curvature
         slope = math.sqrt(max(s * s - 4 * curvature * distance, 0))
         f = 2 * distance / (s + slope)
-        low, high = i + f, self.width - 1 - (i + f)
-        m = self.unfolded(min(low, high))
-        return {"d": distance, "S": s, "dx/df": slope, "f": f, "q": self.du_dc(min(low, high)) / slope} | {
-            "u": m if low <= high else 1 - m
-        }
+        values = {"d": distance, "S": s, "dx/df": slope, "f": f, "q": self.h[i] / slope}
+        return values | {"u": self.u[i] + f * self.h[i]}
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +134,7 @@ def test_worked_example(example):
     reader, knots, samples = example
     assert (reader.width, reader.height) == (6, 3)
     np.testing.assert_allclose(reader.knots(), knots, atol=5e-9)
-    assert len(samples["u"]) == 2
+    assert len(samples["u"]) == 3
     for n, u in enumerate(samples["u"]):
         found = reader.sample(0.6, u)
         for name, values in samples.items():
@@ -125,12 +145,13 @@ def test_numbers_in_the_text(example, page):
     reader, _, samples = example
     row = reader.row(0.6)
     assert f"r = {row['r']:.9g}, j = {row['j']}, t = {row['t']:.9g}" in page
-    assert f"F0 = {reader.f0:.9g}, F1 = {(0.5 + reader.e) ** 0.25:.9g}, k = {reader.k:.9g}" in page
+    assert f"F0 = {reader.f0:.9g}, F1 = {reader.curve(reader.e + 0.5):.9g}, k = {reader.k:.9g}" in page
     assert row["j"] + 1 == 2
-    for i in (0, 3):
-        assert reader.row_cell(2, i)[2] != reader.free_curvature(2, i)
-    free, clamped = reader.free_curvature(2, 3), reader.row_cell(2, 3)[2]
-    assert f"(D_2 - D_4) / 4 = {free:.9g} lies beyond -0.9 D = {clamped:.9g}" in page
+    clamped = [(j, 4) for j in (1, 2) if reader.row_cell(j, 4)[2] != reader.free_curvature(j, 4)]
+    assert clamped == [(2, 4)]
+    assert f"S_3 = {reader.slope(2, 3):.9g} and S_4 = {reader.slope(2, 4):.9g}" in page
+    free, bound = reader.free_curvature(2, 4), reader.row_cell(2, 4)[2]
+    assert f"h_4 D_3 / h_3 - D_4 = {free:.9g} lies beyond -0.95 D_4 = {bound:.9g}" in page
     back = reader.invert(0.6, reader.sample(0.6, samples["u"][0])["x"])
     text = page.replace("\n", " ")
     assert (

@@ -16,8 +16,8 @@ from hairlut.warp import Warp
 from precompute import truth
 from precompute.numerical import quantiles
 
-WARP = Warp("quartic", 2.0**-20)
-CELL = Cell("quadratic", 0.9)
+WARP = Warp("octaves", 2.0**-20)
+CELL = Cell("parabola", 0.9)
 ONE_ROW = np.zeros(1)
 
 
@@ -52,7 +52,7 @@ def constant_gaussian(mean, sigma):
 def test_mean_forty_sigma_outside(side, sigma):
     mean = side * (HALF_PI + 40 * sigma)
     lobe = constant_gaussian(mean, sigma)
-    table = bake_table(lobe, 16, 4, Warp("quartic", 2.0**-14), CELL)
+    table = bake_table(lobe, 16, 4, Warp("octaves", 2.0**-14), CELL)
     exact = truth.gaussian_mass(mp.mpf(mean), mp.mpf(sigma), mp.mpf(-HALF_PI), mp.mpf(HALF_PI))
     assert float(exact) == 0.0  # the mass underflows a double
     assert table.log_mass == pytest.approx(float(mp.log(exact)), rel=1e-14)

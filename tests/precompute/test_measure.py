@@ -15,9 +15,9 @@ from hairlut.measure import flat_cells, inclinations, measure, narrowest_cell
 from hairlut.table import Table, bake_table
 from hairlut.warp import Warp
 
-QUARTIC = Warp("quartic", 2.0**-19)
+QUARTIC = Warp("octaves", 2.0**-19)
 ROUNDED_OUT = 2.5e-7  # rad by which an end of the domain may lie within a table's end
-CURVED, LINEAR = Cell("quadratic", 0.9), Cell("linear")
+CURVED, LINEAR = Cell("parabola", 0.9), Cell("linear")
 
 
 @pytest.fixture(scope="module")

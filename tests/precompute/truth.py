@@ -31,6 +31,26 @@ def gaussian_mass(mean, sigma, a, b):
     return (mp.erfc(-b / mp.sqrt(2)) - mp.erfc(-a / mp.sqrt(2))) / 2
 
 
+def octave(x):
+    """(n, g) of x = 2^n (1 + g), 0 <= g < 1."""
+    mantissa, exponent = mp.frexp(x)
+    return exponent - 1, 2 * mantissa - 1
+
+
+def curve(s):
+    """F: fourths of a power of two in each octave, four octaves a power."""
+    n, g = octave(s)
+    q, r = divmod(n + 3, 4)
+    return mp.ldexp(1 + (r + g) / 4, q)
+
+
+def curve_back(y):
+    """G"""
+    q, v = octave(y)
+    r = int(mp.floor(4 * v))
+    return mp.ldexp(1 + 4 * v - r, 4 * q + r - 3)
+
+
 def knot(warp, width, i):
     """(m, upper) of column i, from the definition of the warp."""
     folded = min(i, width - 1 - i)
@@ -38,8 +58,8 @@ def knot(warp, width, i):
     if warp.name == "uniform" or folded == 0:
         return mp.mpf(folded) / (width - 1), upper
     e = mp.mpf(warp.e)
-    f0, f1 = mp.root(e, 4), mp.root(e + mp.mpf(1) / 2, 4)
-    return (f0 + 2 * (f1 - f0) / (width - 1) * folded) ** 4 - e, upper
+    f0, f1 = curve(e), curve(e + mp.mpf(1) / 2)
+    return curve_back(f0 + 2 * (f1 - f0) / (width - 1) * folded) - e, upper
 
 
 class Row:

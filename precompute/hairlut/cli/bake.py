@@ -71,14 +71,14 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     parser.add_argument(
         "--warp",
         metavar="WARP",
-        help="with --size, where the columns lie on the u axis: 'quartic e=NUMBER' or 'uniform' (default: "
-        "quartic, e as measured to be best)",
+        help="with --size, where the columns lie on the u axis: 'octaves e=NUMBER' or 'uniform' (default: "
+        "octaves, e as measured to be best)",
     )
     parser.add_argument(
         "--cell",
         default=str(size.CELL),
         metavar="CELL",
-        help="curve inside a cell: 'quadratic limit=NUMBER' or 'linear' (default: %(default)s)",
+        help="curve inside a cell: 'parabola limit=NUMBER' or 'linear' (default: %(default)s)",
     )
     parser.add_argument(
         "--half",

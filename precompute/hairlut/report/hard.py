@@ -162,8 +162,8 @@ What this says:
   drawn: the first and last cell reach from the lobe to the ends of the domain, 15000 sigma away, because a
   direction that the table could never draw is energy that no weight restores.
 - **A valley** is what this design does worst. Two separate modes, or a gap of zero density, put a jump into
-  the inverse CDF at a probability where the quartic warp has its widest cells: V is 0.18 at 64 columns, 0.05
-  at 256 and 0.01 at 1024. Such a distribution is two lobes: bake them as two tables and choose between them
+  the inverse CDF at a probability where the warp has its widest cells: V is 0.16 at 64 columns, 0.04 at 256
+  and 0.01 at 1024. Such a distribution is two lobes: bake them as two tables and choose between them
   by their masses, as `hairlut_sample_mixture` does.
 - **A jump** of the density costs one badly fitting cell: V falls as 1/width, not as 1/width^4.
 - **Ends that are cut**, and means far outside, cost little until the density falls off within a few hundred

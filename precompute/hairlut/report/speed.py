@@ -29,10 +29,10 @@ RIVALS = {
     "analytic/scalar": "plain C: two erff, Giles' erfinv",
     "hybrid/scalar": "hybrid: ends tabulated, Giles' erfinv",
     "boost/scalar": "Boost.Math erf_inv",
-    "analytic/vector256": "analytic, compiler's AVX2 with -ffast-math",
-    "analytic/vector512": "analytic, compiler's AVX-512 with -ffast-math",
-    "hybrid/vector256": "hybrid, compiler's AVX2 with -ffast-math",
-    "hybrid/vector512": "hybrid, compiler's AVX-512 with -ffast-math",
+    "analytic/vector256": "analytic, vectorised by the compiler, 256 bits, -ffast-math",
+    "analytic/vector512": "analytic, vectorised by the compiler, AVX-512, -ffast-math",
+    "hybrid/vector256": "hybrid, vectorised by the compiler, 256 bits, -ffast-math",
+    "hybrid/vector512": "hybrid, vectorised by the compiler, AVX-512, -ffast-math",
     "mkl/vector": "MKL: vsErf, vsErfInv, vsExp over arrays",
 }
 
@@ -42,8 +42,9 @@ CANDIDATES = {
     "two-sided-power": "two-sided power",
     "logit": "regularised logit",
     "probit": "regularised probit, by Giles' polynomial",
-    "octaves": "knots per octave, a float's bits",
-    "quartic": "quartic, folded",
+    "logarithm": "knots evenly in every octave, a float's bits",
+    "quartic": "quartic, folded: two square roots",
+    "octaves": "octaves, folded: a float's bits shifted by two",
 }
 
 
@@ -65,7 +66,7 @@ def bake_sizes(folder: Path, sides=SIDES) -> list[Point]:
     points = []
     for side in sides:
         e = write_model(folder / str(side), side)
-        points += designs(side, Warp("quartic", e))
+        points += designs(side, Warp("octaves", e))
     return points
 
 
@@ -84,7 +85,7 @@ def square(lobe, side: int) -> Table:
         return table_of_size(lobe, side, side).table
     for exponent in EXPONENTS:
         if exponent >= -24:
-            table = bake_unless_flat(lobe, side, Warp("quartic", 2.0**exponent))
+            table = bake_unless_flat(lobe, side, Warp("octaves", 2.0**exponent))
             if table and narrowest_cell(table.texels) >= MIN_STEPS:
                 return table
     raise AssertionError("the widest e leaves wide cells")
@@ -101,11 +102,11 @@ def designs(side: int, warp: Warp) -> list[Point]:
     """The shipped design and the simpler ones that it displaced, of one size."""
     curved, linear = CELL, Cell("linear")
     tables = {
-        ("quartic warp, curved cells", "sample/{}"): bake_table(LOBE, side, side, warp, curved),
-        ("quartic warp, linear cells", None): bake_table(LOBE, side, side, warp, linear),
+        ("octaves warp, curved cells", "sample/{}"): bake_table(LOBE, side, side, warp, curved),
+        ("octaves warp, linear cells", None): bake_table(LOBE, side, side, warp, linear),
         ("uniform in u, linear cells", "uniform/{}"): bake_table(LOBE, side, side, Warp("uniform"), linear),
     }
-    tables["quartic warp, curved cells, half floats", None] = as_half(next(iter(tables.values())))
+    tables["octaves warp, curved cells, half floats", None] = as_half(next(iter(tables.values())))
     return [
         _point(name, timed and f"{timed}/{side}/direct_theta", table)
         for (name, timed), table in tables.items()
@@ -124,8 +125,8 @@ def _point(design: str, timed: str | None, table: Table) -> Point:
 # --------------------------------------------------------------------------------------------------
 
 LOOKS = {
-    ("quartic warp, curved cells", "batch"): (figures.BLUE, "o-", "hairlut, batch"),
-    ("quartic warp, curved cells", "scalar"): (figures.BLUE, "o--", "hairlut, one call a sample"),
+    ("octaves warp, curved cells", "batch"): (figures.BLUE, "o-", "hairlut, batch"),
+    ("octaves warp, curved cells", "scalar"): (figures.BLUE, "o--", "hairlut, one call a sample"),
     ("uniform in u, linear cells", "batch"): (figures.ORANGE, "s-", "uniform table, batch"),
     ("uniform in u, linear cells", "scalar"): (figures.ORANGE, "s--", "uniform table, one call"),
 }
@@ -134,8 +135,8 @@ RIVAL_LOOKS = {
     "analytic/scalar": (figures.RED, "--", "analytic in C"),
     "hybrid/scalar": (figures.GREEN, "--", "hybrid"),
     "mkl/vector": (figures.PURPLE, "-", "MKL, arrays"),
-    "analytic/vector512": (figures.RED, "-", "analytic, AVX-512"),
-    "hybrid/vector512": (figures.GREEN, "-", "hybrid, AVX-512"),
+    "analytic/vector256": (figures.RED, "-", "analytic, arrays"),
+    "hybrid/vector256": (figures.GREEN, "-", "hybrid, arrays"),
 }
 AXES = {
     "relative variance V that the table adds": lambda point: point.errors.relative_variance,
@@ -216,8 +217,8 @@ asks what it costs where there is one.
 """
 
 WARPS = """
-By themselves, the warps of the [study](study.md), u to coordinate and slope. A map optimised for one lobe
-is a spline, which costs a search or a table of its own, and was not timed.
+By themselves, the warps of the [study](study.md), u to the coordinate whose integer part is the cell. A map
+optimised for one lobe is a spline, which costs a search or a table of its own, and was not timed.
 
 """
 HALF = """
@@ -225,8 +226,8 @@ V stops falling at about 256: there the end cells of a row are only a few float 
 with the width to keep them from vanishing. Nothing is gained beyond that size, and 64x64 is where V is
 invisible already.
 
-Half floats cost the same time, since the library expands texels when it loads them; what they cost in error
-is in the table: no size is worth it. The [study](study.md) has the other 16-bit forms.
+Half floats cost the same time, since the library expands texels when it loads them. At every size some of
+their cells are flat: no angle, and so an infinite density. The [study](study.md) has the other 16-bit forms.
 """
 
 
@@ -257,8 +258,8 @@ def _size_row(point: Point, times: timing.Times) -> tuple[str, ...]:
         str(point.bytes),
         f"{errors.relative_variance:.1e}" if not point.flat else "infinite",
         f"{errors.largest_weight:.3g}" if not point.flat else "",
-        f"{errors.total_variation:.1e}",
-        f"{errors.inner_quantile_error:.1e}",
+        f"{errors.total_variation:.1e}" if not point.flat else "",
+        f"{errors.inner_quantile_error:.1e}" if not point.flat else "",
         str(point.flat),
         f"{scalar:.1f}" if scalar else "",
         f"{batch:.2f}" if batch else "",
@@ -272,7 +273,7 @@ def _rivals(times: timing.Times) -> str:
         ns = times.get(f"rival/{name}/fitted/direct_theta")
         against = "scalar" if name.endswith("scalar") else "batch"
         if ns is None:
-            rows.append((label, "not built here", "", ""))
+            rows.append((label, "not timed here", "", ""))
         else:
             spread = times.spread[f"rival/{name}/fitted/direct_theta"]
             rows.append((label, f"{ns:.2f}", f"{spread:.0%}", f"{ns / ours[against]:.2f} ({against})"))
@@ -282,10 +283,10 @@ def _rivals(times: timing.Times) -> str:
 def _warp(times: timing.Times) -> str:
     rows = []
     for name in ("direct_theta", "direct_phi", "multiple_theta"):
-        quartic, uniform = (times.get(f"{kind}/scalar/64/{name}") for kind in ("sample", "uniform"))
-        if quartic and uniform:
-            rows.append((name, f"{uniform:.1f}", f"{quartic:.1f}", f"{quartic / uniform - 1:+.0%}"))
-    whole = markdown_table(("table, 64x64, one call", "uniform, ns", "quartic, ns", "more"), rows)
+        octaves, uniform = (times.get(f"{kind}/scalar/64/{name}") for kind in ("sample", "uniform"))
+        if octaves and uniform:
+            rows.append((name, f"{uniform:.1f}", f"{octaves:.1f}", f"{octaves / uniform - 1:+.0%}"))
+    whole = markdown_table(("table, 64x64, one call", "uniform, ns", "octaves, ns", "more"), rows)
     return whole + WARPS + _candidates(times)
 
 

@@ -64,7 +64,7 @@ HAIRLUT_API const hairlut_model *hairlut_builtin(const char *name);
 
 typedef enum hairlut_warp {
     HAIRLUT_WARP_UNIFORM = 0, /* knots uniform in u: the baseline, only for comparisons */
-    HAIRLUT_WARP_QUARTIC = 1  /* knots uniform in +-(min(u,1-u) + e)^(1/4) */
+    HAIRLUT_WARP_OCTAVES = 1  /* knots uniform in F(min(u,1-u) + e), F near a fourth root */
 } hairlut_warp;
 
 typedef enum hairlut_azimuth {
@@ -83,8 +83,8 @@ typedef struct hairlut_table {
     float domain_min;     /* rad, -2 pi <= domain_min; the first texel of every row */
     float domain_max;     /* rad, <= 2 pi; the last texel of every row */
     hairlut_warp warp;
-    float warp_e;         /* the quartic warp's parameter, 1e-12 to 1; ignored for the uniform warp */
-    float cell_limit;     /* in [0, 0.95]: bound of a cell's curvature; 0 makes cells linear */
+    float warp_e;         /* the parameter of octaves, 1e-12 to 1; ignored for the uniform warp */
+    float cell_limit;     /* in [0, 0.95]: bound of a cell's curvature; 0 makes cells linear in u */
 } hairlut_table;
 
 typedef struct hairlut_model_desc {

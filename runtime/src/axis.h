@@ -1,11 +1,12 @@
 /* The one reading of a table, shared by sample, pdf and invert (luts/FORMAT.md, "Reading").
  *
- * The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
+ * The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with d = m - u0 the distance in u
+ * from its nearer knot,
  *
- *     x(f) = x0 + f (a - c f),     dx/df = a - 2 c f
+ *     x = x0 + d (a - c d),     dx/dm = a - 2 c d,     density = 1 / |dx/dm|,     (dx/dm)^2 = a^2 - 4 c (x - x0),
  *
- * where c is the cell's curvature and a its slope at f = 0, its width d plus c. The density is du/|dx|. All is counted from
- * the nearer end of the u axis: in the high half of a row d and a are negative. */
+ * where a is the slope at that knot and c the cell's curvature. All is counted from the nearer end of the u axis: m is
+ * min(u, 1-u), and in the high half of a row a is negative. */
 #ifndef HAIRLUT_AXIS_H
 #define HAIRLUT_AXIS_H
 
@@ -29,6 +30,8 @@
 #define HAIRLUT_INLINE static inline
 #endif
 
+static const float hairlut_least_square = 6.5e-4f; /* below (0.05 / 1.95)^2 */
+
 /* Where theta_r lies: the row below it, and the weight of the row above, in [0,1). */
 typedef struct hairlut_row {
     int j;
@@ -36,28 +39,20 @@ typedef struct hairlut_row {
 } hairlut_row;
 
 typedef struct hairlut_cell {
-    float x0, a, c;
+    float x0, a, c, u0;
 } hairlut_cell;
 
-/* A place on the u axis: its cell, counted from the low or the high end, the fraction in it, and |du/dcolumn| there. */
+/* A place on the u axis: m = min(u, 1-u), and its cell, counted from the low or the high end. */
 typedef struct hairlut_knot {
     int i;
     int high;
-    float f;
-    float du;
+    float m;
 } hairlut_knot;
 
-/* Where an angle lies: its cell, counted from the low or the high end, the fraction of it, counted likewise, |dx/df|. */
-typedef struct hairlut_place {
-    int i;
-    int high;
-    float f;
-    float slope;
-} hairlut_place;
-
+/* An angle drawn, and |dx/du| there: the density is one over it, which the caller takes of all its axes at once. */
 typedef struct hairlut_draw {
     float x;
-    float pdf;
+    float slope;
 } hairlut_draw;
 
 /* The larger and the smaller of two numbers; NaN in x gives y. */
@@ -106,26 +101,17 @@ HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, h
     const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(q));
     float part[3];
     hairlut_quad_first3(hairlut_quad_add(below, above), part);
-    const hairlut_cell cell = {part[0], part[1], part[2]};
+    const hairlut_cell cell = {part[0], part[1], part[2], hairlut_quad_last(hairlut_quad_load(p))};
     return cell;
 }
 
-/* du/dcolumn, relative to axis->du, where the warp's curve has the value y. */
-static inline float hairlut_axis_stretch(const hairlut_axis *axis, float y)
-{
-    return axis->warp == HAIRLUT_WARP_QUARTIC ? y * (y * y) : 1.0f;
-}
-
-/* u to column. The fold at u = 1/2 keeps the relative precision of both tails, and chooses the half without a branch: u is
- * as good as random, and so would be the branch. The column is not below 0, because f0 is this curve's value at m = 0 to the
- * last bit. */
+/* u to cell. The fold at u = 1/2 keeps the relative precision of both tails, and chooses the half without a branch: u is
+ * as good as random, and so would be the branch. */
 HAIRLUT_INLINE hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
 {
     const float m = hairlut_max(hairlut_min(u, 1.0f - u), 0.0f);
-    const float y = axis->warp == HAIRLUT_WARP_QUARTIC ? sqrtf(sqrtf(m + axis->e)) : m;
-    const float c = (y - axis->f0) * axis->inverse_k;
-    const int i = (int)c;
-    const hairlut_knot knot = {i, u > 0.5f, c - (float)i, axis->du * hairlut_axis_stretch(axis, y)};
+    const float y = axis->warp == HAIRLUT_WARP_OCTAVES ? hairlut_shifted(m + axis->e) : m;
+    const hairlut_knot knot = {(int)(y * axis->scale - axis->origin), u > 0.5f, m};
     return knot;
 }
 
@@ -173,27 +159,12 @@ HAIRLUT_INLINE int hairlut_axis_find(const hairlut_axis *axis, hairlut_row row, 
     return i < last ? i : last; /* x is the domain's end */
 }
 
-/* The fraction of a cell at which x lies; *slope gets |dx/df| there. The root of the quadratic is that slope, written as the
- * slope at the cell's flatter end and the distance from there, which cancels nothing. */
-static inline float hairlut_cell_solve(const hairlut_cell *cell, float x, float *slope)
+/* |dx/du| where a cell is at x. A curvature is at most 0.95 of a width, so that no slope is below 0.05 / 1.95 of another in the
+ * cell, whatever rounding does. Near that bound the difference cancels, no more than x itself is rounded. */
+static inline float hairlut_cell_slope(const hairlut_cell *cell, float x)
 {
-    const float sign = copysignf(1.0f, cell->a); /* no branch to predict, nor in what follows */
-    const float a = sign * cell->a, c = sign * cell->c, d = a - c;
-    const float distance = hairlut_clamp(sign * (x - cell->x0), 0.0f, d);
-    const float flat = d - fabsf(c);
-    const float far_end = 0.5f * (d + copysignf(d, c)); /* d or 0 */
-    const float away = fabsf(far_end - distance);
-    *slope = sqrtf(flat * flat + 4.0f * fabsf(c) * away);
-    return hairlut_min(2.0f * distance / (a + *slope), 1.0f);
-}
-
-/* Cell `found`, counted from the low end, as stored: from the nearer end of the row. *i gets its index there, *high whether
- * that is the high end. */
-static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_row row, int found, int *i, int *high)
-{
-    *high = found >= axis->columns / 2;
-    *i = abs((-*high & (axis->columns - 2)) - found);
-    return hairlut_axis_cell(axis, row.j, hairlut_quad_all(row.t), *i, *high);
+    const float square = cell->a * cell->a;
+    return sqrtf(hairlut_max(square - 4.0f * cell->c * (x - cell->x0), hairlut_least_square * square));
 }
 
 /* The row and the cell of an angle. */
@@ -202,20 +173,20 @@ typedef struct hairlut_found {
     int cell; /* counted from the low end */
 } hairlut_found;
 
+/* The cell that look_up found, as stored: from the nearer end of the row. *high gets whether that is the high end. */
+static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_found found, int *high)
+{
+    *high = found.cell >= axis->columns / 2;
+    const int i = abs((-*high & (axis->columns - 2)) - found.cell);
+    return hairlut_axis_cell(axis, found.row.j, hairlut_quad_all(found.row.t), i, *high);
+}
+
 /* x outside the domain is moved to its end, NaN to the low one: the search is for what a row holds, not for infinity. */
 HAIRLUT_INLINE hairlut_found hairlut_axis_look_up(const hairlut_axis *axis, float theta_r, float x)
 {
     const hairlut_row row = hairlut_axis_row(axis, theta_r);
     const hairlut_found found = {row, hairlut_axis_find(axis, row, hairlut_axis_inside(axis, x))};
     return found;
-}
-
-static inline hairlut_place hairlut_axis_locate(const hairlut_axis *axis, hairlut_found found, float x)
-{
-    hairlut_place place;
-    const hairlut_cell cell = hairlut_axis_found(axis, found.row, found.cell, &place.i, &place.high);
-    place.f = hairlut_cell_solve(&cell, x, &place.slope);
-    return place;
 }
 
 /* x may be beyond an end of the domain by the rounding of a blend, two steps of a float: hairlut_axis_inside moves it back,
@@ -226,45 +197,32 @@ HAIRLUT_INLINE hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float 
     const hairlut_quad t = hairlut_quad_split(hairlut_axis_position(axis, theta_r), &j);
     const hairlut_knot knot = hairlut_axis_knot(axis, u);
     const hairlut_cell cell = hairlut_axis_cell(axis, j, t, knot.i, knot.high);
-    const float bend = cell.c * knot.f, mean_slope = cell.a - bend;
-    const hairlut_draw draw = {cell.x0 + knot.f * mean_slope, knot.du / fabsf(mean_slope - bend)};
+    const float d = knot.m - cell.u0, bend = cell.c * d, mean_slope = cell.a - bend;
+    const hairlut_draw draw = {cell.x0 + d * mean_slope, fabsf(mean_slope - bend)};
     return draw;
 }
 
-/* The column, counted from the end that is nearer. The middle cell of an even number of columns is seen from the low end, and
- * beyond its middle the high end is nearer: hence the smaller of the distances from both. */
-static inline float hairlut_axis_folded(const hairlut_axis *axis, hairlut_place place)
+/* |dx/du| at x, which look_up found. */
+HAIRLUT_INLINE float hairlut_axis_slope(const hairlut_axis *axis, hairlut_found found, float x)
 {
-    const float column = (float)place.i + place.f;
-    return hairlut_min(column, (float)(axis->columns - 1) - column);
+    int high;
+    const hairlut_cell cell = hairlut_axis_found(axis, found, &high);
+    return hairlut_cell_slope(&cell, x);
 }
 
-/* The density at x, which look_up found. */
-HAIRLUT_INLINE float hairlut_axis_density(const hairlut_axis *axis, hairlut_found found, float x)
+/* 1 in the domain, 0 outside. */
+static inline float hairlut_axis_holds(const hairlut_axis *axis, float x)
 {
-    const hairlut_place place = hairlut_axis_locate(axis, found, x);
-    const float y = axis->f0 + axis->k * hairlut_axis_folded(axis, place);
-    const float pdf = hairlut_axis_stretch(axis, y) * (axis->du / place.slope);
-    return x >= axis->low && x <= axis->high ? pdf : 0.0f;
-}
-
-static inline float hairlut_axis_pdf(const hairlut_axis *axis, float theta_r, float x)
-{
-    return hairlut_axis_density(axis, hairlut_axis_look_up(axis, theta_r, x), x);
+    return (float)(x >= axis->low && x <= axis->high);
 }
 
 static inline float hairlut_axis_invert(const hairlut_axis *axis, float theta_r, float x)
 {
-    const float f0 = axis->f0;
-    const hairlut_place place = hairlut_axis_locate(axis, hairlut_axis_look_up(axis, theta_r, x), x);
-    const float column = hairlut_axis_folded(axis, place);
-    float m = axis->k * column;
-    if (axis->warp == HAIRLUT_WARP_QUARTIC) {
-        const float y = f0 + m;
-        m *= (y + f0) * (y * y + f0 * f0); /* y^4 - f0^4 without its cancellation */
-    }
-    m = hairlut_clamp(m, 0.0f, 0.5f);
-    const int high = place.high | (column < (float)place.i + place.f);
+    int high;
+    const float inside = hairlut_axis_inside(axis, x);
+    const hairlut_cell cell = hairlut_axis_found(axis, hairlut_axis_look_up(axis, theta_r, x), &high);
+    const float slope = copysignf(hairlut_cell_slope(&cell, inside), cell.a);
+    const float m = hairlut_clamp(cell.u0 + 2.0f * (inside - cell.x0) / (cell.a + slope), 0.0f, 1.0f);
     return high ? 1.0f - m : m;
 }
 

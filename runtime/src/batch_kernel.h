@@ -5,13 +5,13 @@
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
  *   every(m)        whether all lanes are true
- *   times_sign(a, b)  a with its sign changed where b's is set
+ *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
  *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
- * results equal bit for bit. The work on a block is done in passes, because a single one would wait for the square roots,
- * then for the loads (tests/bench/NOTES.md). In a pass, all inputs of a vector are read before its outputs are written,
+ * results equal bit for bit. The work on a block is done in passes, because a single one would wait for where to load
+ * from, then for the loads (tests/bench/NOTES.md). In a pass, all inputs of a vector are read before its outputs are written,
  * which is what allows outputs in place of inputs. */
 #ifndef HAIRLUT_BATCH_KERNEL_H
 #define HAIRLUT_BATCH_KERNEL_H
@@ -20,36 +20,28 @@
 
 enum { BLOCK = 128 }; /* samples a pass */
 
-/* Where the samples of a block read an axis: the offset of the cell, and hairlut_knot. */
+/* Where the samples of a block read an axis: the offset of the cell; the weight of the row above; m of hairlut_knot. */
 typedef struct places {
     int at[BLOCK];
     float t[BLOCK];
-    float f[BLOCK];
-    float du[BLOCK];
+    float m[BLOCK];
 } places;
 
 /* Where the directions of a block are looked up: the row; the cell as far as it is found, in the end counted from the nearer
- * end of the row; where to read on, first among the texels, then among the cells; the angle; and axis->du,
- * or 0 where the angle lies outside the domain. */
+ * end of the row; where to read on, first among the texels, then among the cells; the angle; and whether the domain holds it:
+ * 1 or 0. */
 typedef struct queries {
     int j[BLOCK];
     int cell[BLOCK];
     int at[BLOCK];
     float t[BLOCK];
     float x[BLOCK];
-    float du[BLOCK];
+    float holds[BLOCK];
 } queries;
 
 typedef struct cells {
-    real x0, a, c;
+    real x0, a, c, u0;
 } cells;
-
-/* The cells of a block. */
-typedef struct block_of_cells {
-    float x0[BLOCK];
-    float a[BLOCK];
-    float c[BLOCK];
-} block_of_cells;
 
 static inline real clamp(real x, real low, real high)
 {
@@ -74,34 +66,23 @@ static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask
     return iadd(iadd(cell, half), imul(j, iall(HAIRLUT_CELL)));
 }
 
-/* hairlut_axis_stretch */
-static inline real stretch(const hairlut_axis *axis, real y)
-{
-    return axis->warp == HAIRLUT_WARP_QUARTIC ? mul(y, mul(y, y)) : all(1.0f);
-}
-
 /* hairlut_axis_knot, but for the offset: the cell, counted from the nearer end */
-static inline whole find_knot(const hairlut_axis *axis, real u, real *f, real *du)
+static inline whole find_knot(const hairlut_axis *axis, real u, real *m)
 {
-    const real m = larger(smaller(u, sub(all(1.0f), u)), all(0.0f));
-    const real y = axis->warp == HAIRLUT_WARP_QUARTIC ? root(root(add(m, all(axis->e)))) : m;
-    const real c = mul(sub(y, all(axis->f0)), all(axis->inverse_k));
-    const whole i = truncated(c);
-    *f = sub(c, converted(i));
-    *du = mul(all(axis->du), stretch(axis, y));
-    return i;
+    *m = larger(smaller(u, sub(all(1.0f), u)), all(0.0f));
+    const real y = axis->warp == HAIRLUT_WARP_OCTAVES ? shifted(add(*m, all(axis->e))) : *m;
+    return truncated(sub(mul(y, all(axis->scale)), all(axis->origin)));
 }
 
 static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, places *p)
 {
     for (size_t s = 0; s < n; s += LANES) {
-        real t, f, du;
+        real t, m;
         const real number = load(u + s);
-        const whole j = find_row(axis, load(theta_r + s), &t), i = find_knot(axis, number, &f, &du);
+        const whole j = find_row(axis, load(theta_r + s), &t), i = find_knot(axis, number, &m);
         istore(p->at + s, cell_offset(axis, j, i, greater(number, all(0.5f))));
         store(p->t + s, t);
-        store(p->f + s, f);
-        store(p->du + s, du);
+        store(p->m + s, m);
     }
 }
 
@@ -112,18 +93,18 @@ static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
     gather4(axis->ends[0], at, p);
     gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
     const real s = sub(all(1.0f), t);
-    const cells cell = {add(mul(s, p[0]), mul(t, q[0])), add(mul(s, p[1]), mul(t, q[1])), add(mul(s, p[2]), mul(t, q[2]))};
+    const cells cell = {add(mul(s, p[0]), mul(t, q[0])), add(mul(s, p[1]), mul(t, q[1])), add(mul(s, p[2]), mul(t, q[2])), p[3]};
     return cell;
 }
 
 /* hairlut_axis_sample, not moved into the domain, at the places of samples s .. s+LANES-1 */
-static inline real draw(const hairlut_axis *axis, const places *p, size_t s, real *pdf)
+static inline real draw(const hairlut_axis *axis, const places *p, size_t s, real *slope)
 {
-    const real f = load(p->f + s);
     const cells cell = load_cells(axis, p->at + s, load(p->t + s));
-    const real bend = mul(cell.c, f), mean_slope = sub(cell.a, bend);
-    *pdf = over(load(p->du + s), magnitude(sub(mean_slope, bend)));
-    return add(cell.x0, mul(f, mean_slope));
+    const real d = sub(load(p->m + s), cell.u0);
+    const real bend = mul(cell.c, d), mean_slope = sub(cell.a, bend);
+    *slope = magnitude(sub(mean_slope, bend));
+    return add(cell.x0, mul(d, mean_slope));
 }
 
 /* hairlut_axis_find up to the pivots, n of them: the first cell of the block, and the offset of its first texel */
@@ -169,18 +150,8 @@ static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q
     }
 }
 
-/* Loads the cells that were found, in a pass of its own: the arithmetic of a density is long enough. */
-static inline void load_found(const hairlut_axis *axis, size_t n, const queries *q, block_of_cells *found)
-{
-    for (size_t s = 0; s < n; s += LANES) {
-        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
-        store(found->x0 + s, cell.x0);
-        store(found->a + s, cell.a);
-        store(found->c + s, cell.c);
-    }
-}
-
-static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q, block_of_cells *found)
+/* hairlut_axis_look_up and hairlut_axis_slope */
+static inline void find_slopes(const hairlut_axis *axis, size_t n, queries *q, float *slope)
 {
     if (HAIRLUT_IS_SMALL(axis->columns)) {
         find_blocks(axis, n, q, HAIRLUT_PIVOTS / 2);
@@ -190,7 +161,12 @@ static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q, bl
         halve_blocks(axis, n, q);
         find_in_blocks(axis, n, q, HAIRLUT_PIVOTS);
     }
-    load_found(axis, n, q, found);
+    for (size_t s = 0; s < n; s += LANES) {
+        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
+        const real square = mul(cell.a, cell.a);
+        const real here = sub(square, mul(mul(all(4.0f), cell.c), sub(load(q->x + s), cell.x0)));
+        store(slope + s, root(larger(here, mul(all(hairlut_least_square), square))));
+    }
 }
 
 /* Asks for x, moved into the domain: the search is for what a row holds, not for infinity. */
@@ -203,31 +179,7 @@ static inline void ask(const hairlut_axis *axis, real theta_r, real x, queries *
     istore(q->at + s, imul(j, iall(axis->stride)));
     store(q->t + s, t);
     store(q->x + s, clamp(x, low, high));
-    store(q->du + s, choose(both(at_least(x, low), at_least(high, x)), all(axis->du), all(0.0f)));
-}
-
-/* hairlut_cell_solve; *slope gets |dx/df| */
-static inline real solve(cells cell, real x, real *slope)
-{
-    const real a = magnitude(cell.a), c = times_sign(cell.c, cell.a), bend = magnitude(c), d = sub(a, c);
-    const real distance = clamp(times_sign(sub(x, cell.x0), cell.a), all(0.0f), d);
-    const real flat = sub(d, bend);
-    const real away = choose(greater(c, all(0.0f)), sub(d, distance), distance);
-    *slope = root(add(mul(flat, flat), mul(mul(all(4.0f), bend), away)));
-    return smaller(over(mul(all(2.0f), distance), add(a, *slope)), all(1.0f));
-}
-
-/* hairlut_axis_pdf */
-static inline real density(const hairlut_axis *axis, const queries *q, const block_of_cells *found, size_t s)
-{
-    const real x = load(q->x + s);
-    const whole i = iload(q->cell + s);
-    const cells cell = {load(found->x0 + s), load(found->a + s), load(found->c + s)};
-    real slope;
-    const real column = add(converted(i), solve(cell, x, &slope));
-    const real folded = smaller(column, sub(all((float)(axis->columns - 1)), column)); /* hairlut_axis_folded */
-    const real y = add(all(axis->f0), mul(all(axis->k), folded));
-    return mul(stretch(axis, y), over(load(q->du + s), slope));
+    store(q->holds + s, choose(both(at_least(x, low), at_least(high, x)), all(1.0f), all(0.0f)));
 }
 
 /* phi less n turns; low where that is not in [low, low + 2 pi) */
@@ -302,13 +254,13 @@ static inline void sample_direct_block(const hairlut_model *shared, size_t n, co
     for (size_t s = 0; s < n; s += LANES) {
         const real phi_r = load(in[1] + s);
         const mask valid = known(load(in[0] + s), phi_r, load(in[2] + s), load(in[3] + s));
-        real pdf_theta, pdf_phi;
-        const real theta_i = draw(&model->direct_theta, &theta, s, &pdf_theta);
-        const real relative = draw(&model->direct_phi, &phi, s, &pdf_phi);
+        real slope_theta, slope_phi;
+        const real theta_i = draw(&model->direct_theta, &theta, s, &slope_theta);
+        const real relative = draw(&model->direct_phi, &phi, s, &slope_phi);
         const real r = wrap(phi_r, -hairlut_pi);
         const real phi_i = model->azimuth == HAIRLUT_AZIMUTH_SUM ? sub(relative, r) : add(relative, r);
         store_samples(&model->direct_theta, out, s, theta_i, wrap_down(phi_i, -hairlut_pi),
-                      choose(valid, mul(pdf_theta, pdf_phi), all(0.0f)));
+                      choose(valid, over(all(1.0f), mul(slope_theta, slope_phi)), all(0.0f)));
     }
 }
 
@@ -324,10 +276,10 @@ static inline void sample_multiple_block(const hairlut_model *shared, size_t n, 
         const real turn = mul(all(hairlut_two_pi), clamp(u_phi, all(0.0f), all(1.0f)));
         const real phi = sub(turn, all(hairlut_pi));
         const real phi_i = choose(greater(all(hairlut_pi), phi), phi, all(-hairlut_pi));
-        real pdf;
-        const real theta_i = draw(&model->multiple_theta, &theta, s, &pdf);
+        real slope;
+        const real theta_i = draw(&model->multiple_theta, &theta, s, &slope);
         store_samples(&model->multiple_theta, out, s, theta_i, phi_i,
-                      choose(valid, mul(pdf, all(hairlut_inverse_two_pi)), all(0.0f)));
+                      choose(valid, over(all(hairlut_inverse_two_pi), slope), all(0.0f)));
     }
 }
 
@@ -349,31 +301,31 @@ static inline real where_known(const float *const in[4], size_t s, real pdf)
 static inline void pdf_direct_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta, phi;
-    block_of_cells theta_cells, phi_cells;
+    float theta_slope[BLOCK], phi_slope[BLOCK];
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in[0] + s);
         ask(&model->direct_theta, theta_r, load(in[2] + s), &theta, s);
         ask(&model->direct_phi, theta_r, relative_azimuth(model, load(in[1] + s), load(in[3] + s)), &phi, s);
     }
-    find_cells(&model->direct_theta, n, &theta, &theta_cells);
-    find_cells(&model->direct_phi, n, &phi, &phi_cells);
+    find_slopes(&model->direct_theta, n, &theta, theta_slope);
+    find_slopes(&model->direct_phi, n, &phi, phi_slope);
     for (size_t s = 0; s < n; s += LANES) {
-        const real pdf = mul(density(&model->direct_theta, &theta, &theta_cells, s),
-                             density(&model->direct_phi, &phi, &phi_cells, s));
-        store(out + s, where_known(in, s, pdf));
+        const real holds = mul(load(theta.holds + s), load(phi.holds + s));
+        const real slope = mul(load(theta_slope + s), load(phi_slope + s));
+        store(out + s, where_known(in, s, over(holds, slope)));
     }
 }
 
 static inline void pdf_multiple_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta;
-    block_of_cells theta_cells;
+    float slope[BLOCK];
     for (size_t s = 0; s < n; s += LANES)
         ask(&model->multiple_theta, load(in[0] + s), load(in[2] + s), &theta, s);
-    find_cells(&model->multiple_theta, n, &theta, &theta_cells);
+    find_slopes(&model->multiple_theta, n, &theta, slope);
     for (size_t s = 0; s < n; s += LANES) {
-        const real pdf = density(&model->multiple_theta, &theta, &theta_cells, s);
-        store(out + s, where_known(in, s, mul(pdf, all(hairlut_inverse_two_pi))));
+        const real holds = mul(load(theta.holds + s), all(hairlut_inverse_two_pi));
+        store(out + s, where_known(in, s, over(holds, load(slope + s))));
     }
 }
 

@@ -116,11 +116,11 @@ static hairlut_result read_warp(const hairlut_exr_file *file, hairlut_warp *warp
     const hairlut_result result = hairlut_exr_string(file, "hairlut.warp", &text);
     if (result != HAIRLUT_OK)
         return result;
-    *warp = equals(text, "uniform") ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_QUARTIC;
+    *warp = equals(text, "uniform") ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES;
     *e = 0.0;
-    if (*warp == HAIRLUT_WARP_QUARTIC && !read_parameter(text, "quartic e=", e))
-        return fail_text(file, "hairlut.warp", text, "'uniform' or 'quartic e=NUMBER'");
-    if (*warp == HAIRLUT_WARP_QUARTIC && !(*e >= 1e-12 && *e <= 1.0))
+    if (*warp == HAIRLUT_WARP_OCTAVES && !read_parameter(text, "octaves e=", e))
+        return fail_text(file, "hairlut.warp", text, "'uniform' or 'octaves e=NUMBER'");
+    if (*warp == HAIRLUT_WARP_OCTAVES && !(*e >= 1e-12 && *e <= 1.0))
         return fail_text(file, "hairlut.warp", text, "e from 1e-12 to 1");
     return HAIRLUT_OK;
 }
@@ -132,8 +132,8 @@ static hairlut_result read_cell(const hairlut_exr_file *file, float *limit)
     const hairlut_result result = hairlut_exr_string(file, "hairlut.cell", &text);
     if (result != HAIRLUT_OK)
         return result;
-    if (!equals(text, "linear") && !(read_parameter(text, "quadratic limit=", &number) && number >= 0.0 && number <= 0.95))
-        return fail_text(file, "hairlut.cell", text, "'linear' or 'quadratic limit=NUMBER' with a number from 0 to 0.95");
+    if (!equals(text, "linear") && !(read_parameter(text, "parabola limit=", &number) && number >= 0.0 && number <= 0.95))
+        return fail_text(file, "hairlut.cell", text, "'linear' or 'parabola limit=NUMBER' with a number from 0 to 0.95");
     *limit = (float)number;
     return HAIRLUT_OK;
 }
@@ -155,13 +155,6 @@ static hairlut_result read_pair(const hairlut_exr_file *file, const char *attrib
     return HAIRLUT_OK;
 }
 
-/* The smaller of u and 1-u of column i, by the warp's formula. */
-static double smaller_tail(hairlut_warp warp, const hairlut_warp_scale *scale, int width, int i)
-{
-    const int mirrored = width - 1 - i;
-    return hairlut_warp_knot(warp, scale, (double)(i < mirrored ? i : mirrored));
-}
-
 /* The knots are in the file for readers that do not know the warp; here they guard against a warp that is not theirs. */
 static hairlut_result check_knots(const hairlut_exr_file *file, hairlut_warp warp, double e)
 {
@@ -171,8 +164,8 @@ static hairlut_result check_knots(const hairlut_exr_file *file, hairlut_warp war
         return result;
     const hairlut_warp_scale scale = hairlut_scale_warp(warp, e, file->width);
     for (int i = 0; i < file->width; ++i) {
-        const double m = smaller_tail(warp, &scale, file->width, i);
         const int upper = 2 * i > file->width - 1;
+        const double m = hairlut_warp_u(warp, &scale, file->width, upper ? file->width - 1 - i : i);
         double u = 0.0;
         if ((i > 0 && !skip(&text, " ")) || !hairlut_read_number(&text.begin, text.end, &u))
             return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,

@@ -30,15 +30,14 @@ enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
     (HAIRLUT_PIVOTS + HAIRLUT_WHOLE(HAIRLUT_WHOLE(columns, HAIRLUT_STEP(columns)), HAIRLUT_LINE))
 #define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * ((height) + 1) + HAIRLUT_LINE)
 
-/* A cell of one row, seen from the end of the row that is nearer: at the fraction f of the way across,
+/* A cell of one row, seen from the end of the row that is nearer: with m = min(u, 1-u) and d = m - u0,
  *
- *     x = x0 + f (a - c f),
+ *     x = x0 + d (a - c d),     |dx/du| = |a - 2 c d|,
  *
- * where a = d + c with d the cell's width and c its curvature; d and a are negative if the high end is the nearer one. The
+ * where u0 is the cell's nearer knot, x0 its angle and a the slope there, negative if the high end is the nearer one. The
  * cells stand in two halves, one from the low end on and one from the high end on, so that a sample, whose place is counted
  * from the nearer end, needs no mirroring; both go one cell beyond u = 1/2. In a half, a cell's rows follow each other: the
- * two that a sample blends are mostly in one cache line. A cell is x0, a, c and a float that nobody reads: one load of 16
- * bytes. */
+ * two that a sample blends are mostly in one cache line. A cell is x0, a, c, u0: one load of 16 bytes. */
 enum { HAIRLUT_CELL = 4 /* floats */ };
 #define HAIRLUT_PITCH(height) (HAIRLUT_CELL * ((height) + 1)) /* floats from one cell of a row to the next */
 #define HAIRLUT_HALF(columns) ((columns) / 2 + 1)              /* cells of a row */
@@ -60,12 +59,10 @@ typedef struct hairlut_axis {
     float row_origin; /* theta_r of row 0 */
     float row_scale;  /* rows per radian of theta_r */
     float row_last;   /* height - 1 */
-    int warp;  /* hairlut_warp */
-    float e;   /* quartic warp: y = (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column, dm/dc = du y^3 */
-    float f0;  /* sqrtf(sqrtf(e)), rounded as when a sample is drawn */
-    float k;   /* uniform warp: m = k c, dm/dc = du */
-    float inverse_k;
-    float du;
+    int warp;         /* hairlut_warp */
+    float e;          /* octaves: the cell of m is the integer part of the folded column y scale - origin, with y the float */
+    float scale;      /* whose bits are those of m + e shifted right by two; uniform: y = m */
+    float origin;     /* y scale at m = 0, rounded as when a sample is drawn, so that no column is below 0 */
     float low; /* the domain */
     float high;
     int columns;
@@ -74,14 +71,18 @@ typedef struct hairlut_axis {
     int step;   /* cells of a block, from one pivot to the next */
 } hairlut_axis;
 
+/* The bits of a float shifted right by two are those of F / 2^96, F as in warp.h. */
+#define HAIRLUT_SHIFT_SCALE 79228162514264337593543950336.0f /* 2^96 */
+
 /* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. `stored`
- * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats. */
+ * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats;
+ * f0 and k are hairlut_warp_scale's, rounded to floats. */
 #define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)      \
     {                                                                                                                 \
         (stored) + HAIRLUT_PIVOTS, {cells, (cells) + HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_)},                \
-            HAIRLUT_PITCH(height_), row_origin_, row_scale_, (float)((height_) - 1), warp_, e_, f0_, k_, 1.0f / (k_),                         \
-            (warp_) == HAIRLUT_WARP_QUARTIC ? 4.0f * (k_) : (k_), low_, high_, columns_, height_,                     \
-            HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                                          \
+            HAIRLUT_PITCH(height_), row_origin_, row_scale_, (float)((height_) - 1), warp_, e_,                       \
+            (warp_) == HAIRLUT_WARP_OCTAVES ? HAIRLUT_SHIFT_SCALE / (k_) : 1.0f / (k_), (f0_) * (1.0f / (k_)), low_,  \
+            high_, columns_, height_, HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                \
     }
 
 struct hairlut_model {

@@ -66,10 +66,10 @@ static hairlut_result validate_numbers(const hairlut_table *t, char *message)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
                             "domain_min %g, domain_max %g: expected increasing angles from -2 pi to 2 pi",
                             (double)t->domain_min, (double)t->domain_max);
-    if (t->warp != HAIRLUT_WARP_UNIFORM && t->warp != HAIRLUT_WARP_QUARTIC)
-        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp is %d: expected HAIRLUT_WARP_UNIFORM or HAIRLUT_WARP_QUARTIC",
+    if (t->warp != HAIRLUT_WARP_UNIFORM && t->warp != HAIRLUT_WARP_OCTAVES)
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp is %d: expected HAIRLUT_WARP_UNIFORM or HAIRLUT_WARP_OCTAVES",
                     (int)t->warp);
-    if (t->warp == HAIRLUT_WARP_QUARTIC && !(t->warp_e >= 1e-12f && t->warp_e <= 1.0f))
+    if (t->warp == HAIRLUT_WARP_OCTAVES && !(t->warp_e >= 1e-12f && t->warp_e <= 1.0f))
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp_e is %g: expected 1e-12 to 1", (double)t->warp_e);
     if (!(t->cell_limit >= 0.0f && t->cell_limit <= 0.95f))
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "cell_limit is %g: expected 0 to 0.95", (double)t->cell_limit);
@@ -113,34 +113,68 @@ static void store_row(float *stored, const float *row, int width)
         stored[k] = HAIRLUT_NO_TEXEL;
 }
 
-/* The curvature of cell i (luts/FORMAT.md, "Reading", step 3): from the widths of both neighbours, or of the one that there
- * is. */
-static float curvature(const float *row, int width, int i, float limit)
+/* A row counted from one of its ends: texel and knot k, and what follows from them for cell k, between knots k and k+1. */
+typedef struct row_view {
+    const float *first;
+    int step; /* 1 from the low end, -1 from the high end */
+    int width;
+    const float *knots;
+} row_view;
+
+static double texel(const row_view *row, int k)
 {
-    const float d = row[i + 1] - row[i], bound = limit * d;
-    const int first = i == 0, last = i == width - 2;
-    const float before = first ? d : row[i] - row[i - 1], after = last ? d : row[i + 2] - row[i + 1];
-    const float c = (first || last ? 1.0f : 0.25f) * (before - after);
+    return (double)row->first[k * row->step];
+}
+
+static double width_in_x(const row_view *row, int k)
+{
+    return texel(row, k + 1) - texel(row, k);
+}
+
+static double width_in_u(const row_view *row, int k)
+{
+    return (double)row->knots[k + 1] - (double)row->knots[k];
+}
+
+/* dx/du at an inner knot: the density there is that of both cells, blended linearly in x. */
+static double knot_slope(const row_view *row, int k)
+{
+    const double d = width_in_x(row, k), before = width_in_x(row, k - 1);
+    return (before + d) / (d * width_in_u(row, k - 1) / before + before * width_in_u(row, k) / d);
+}
+
+/* The curvature of cell k (luts/FORMAT.md, "Reading", step 3). */
+static double curvature(const row_view *row, int k, double limit)
+{
+    const double d = width_in_x(row, k), h = width_in_u(row, k), bound = limit * fabs(d);
+    double c;
+    if (k == 0)
+        c = d - h * width_in_x(row, 1) / width_in_u(row, 1);
+    else if (k == row->width - 2)
+        c = h * width_in_x(row, k - 1) / width_in_u(row, k - 1) - d;
+    else
+        c = h * (knot_slope(row, k) - knot_slope(row, k + 1)) / 2.0;
     return c < -bound ? -bound : c > bound ? bound : c;
 }
 
-static void store_cell(float *stored, float x0, float d, float c)
+static void store_cell(float *stored, const row_view *row, int k, double limit)
 {
-    stored[0] = x0;
-    stored[1] = d + c;
-    stored[2] = c;
-    stored[3] = 0.0f;
+    const double h = width_in_u(row, k), c = curvature(row, k, limit);
+    stored[0] = (float)texel(row, k);
+    stored[1] = (float)((width_in_x(row, k) + c) / h);
+    stored[2] = (float)(c / (h * h));
+    stored[3] = row->knots[k];
 }
 
-/* The cells of row j of an axis. */
-static void store_cells(const hairlut_axis *axis, float *cells, int j, const float *row, float limit)
+/* The cells of row j of an axis; knots are those of its half, and one more. */
+static void store_cells(const hairlut_axis *axis, float *cells, int j, const float *row, const float *knots, float limit)
 {
     const int width = axis->columns;
-    float *low = cells + HAIRLUT_CELL * j, *high = low + (axis->ends[1] - axis->ends[0]);
-    for (int k = 0; k < HAIRLUT_HALF(width); ++k, low += axis->pitch, high += axis->pitch) {
-        const int h = width - 2 - k;
-        store_cell(low, row[k], row[k + 1] - row[k], curvature(row, width, k, limit));
-        store_cell(high, row[h + 1], row[h] - row[h + 1], curvature(row, width, h, limit));
+    const row_view views[2] = {{row, 1, width, knots}, {row + width - 1, -1, width, knots}};
+    for (int end = 0; end < 2; ++end) {
+        float *cell = cells + HAIRLUT_CELL * j + end * (axis->ends[1] - axis->ends[0]);
+        for (int k = 0; k < HAIRLUT_HALF(width); ++k, cell += axis->pitch)
+            store_cell(cell, &views[end], k, (double)limit);
     }
 }
 
@@ -163,12 +197,15 @@ static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *memo
     const float row_scale = (float)((t->height - 1) / ((double)t->theta_r_max - (double)t->theta_r_min));
     const hairlut_axis filled =
         HAIRLUT_AXIS(rows, cells, t->width, t->height, t->theta_r_min, row_scale, t->domain_min, t->domain_max, (int)t->warp,
-                     (float)scale.e, sqrtf(sqrtf((float)scale.e)), (float)scale.k);
+                     (float)scale.e, (float)scale.f0, (float)scale.k);
+    float knots[MAX_SIDE / 2 + 3]; /* of a half, one cell beyond its middle, and the next cell's end for its slope */
     *axis = filled;
+    for (int k = 0; k < HAIRLUT_HALF(t->width) + 2 && k < t->width; ++k)
+        knots[k] = (float)hairlut_warp_u(t->warp, &scale, t->width, k);
     for (int j = 0; j <= t->height; ++j) {
         const float *row = t->texels + (size_t)(j < t->height ? j : t->height - 1) * (size_t)t->width;
         store_row(rows + (size_t)j * (size_t)axis->stride, row, t->width);
-        store_cells(axis, cells, j, row, t->cell_limit);
+        store_cells(axis, cells, j, row, knots, t->cell_limit);
     }
     for (int k = 1; k <= HAIRLUT_LINE; ++k)
         cells[-k] = 0.0f;

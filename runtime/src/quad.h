@@ -1,7 +1,10 @@
-/* Four neighbouring floats at once, where every processor of an architecture has the instructions: x86-64, AArch64. The
+/* Four neighbouring floats at once, and a float's bits, where every processor of an architecture has the instructions: x86-64, AArch64. The
  * form in plain C gives the same numbers. */
 #ifndef HAIRLUT_QUAD_H
 #define HAIRLUT_QUAD_H
+
+#include <stdint.h>
+#include <string.h>
 
 #if defined(HAIRLUT_PLAIN_QUAD)
 #elif defined(__SSE2__) || defined(_M_X64)
@@ -35,6 +38,14 @@ static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
     lane[0] = _mm_cvtss_f32(a);
     lane[1] = _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1));
     lane[2] = _mm_cvtss_f32(_mm_movehl_ps(a, a));
+}
+
+static inline float hairlut_quad_last(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 3)); }
+
+/* The float whose bits are those of s > 0 shifted right by two. */
+static inline float hairlut_shifted(float s)
+{
+    return _mm_cvtss_f32(_mm_castsi128_ps(_mm_srli_epi32(_mm_castps_si128(_mm_set_ss(s)), 2)));
 }
 
 typedef __m128i hairlut_tally; /* four counters */
@@ -73,6 +84,13 @@ static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
     lane[0] = vgetq_lane_f32(a, 0);
     lane[1] = vgetq_lane_f32(a, 1);
     lane[2] = vgetq_lane_f32(a, 2);
+}
+
+static inline float hairlut_quad_last(hairlut_quad a) { return vgetq_lane_f32(a, 3); }
+
+static inline float hairlut_shifted(float s)
+{
+    return vget_lane_f32(vreinterpret_f32_u32(vshr_n_u32(vreinterpret_u32_f32(vdup_n_f32(s)), 2)), 0);
 }
 
 typedef uint32x4_t hairlut_tally;
@@ -134,6 +152,17 @@ static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
 {
     for (int l = 0; l < 3; ++l)
         lane[l] = a.lane[l];
+}
+
+static inline float hairlut_quad_last(hairlut_quad a) { return a.lane[3]; }
+
+static inline float hairlut_shifted(float s)
+{
+    uint32_t bits;
+    memcpy(&bits, &s, sizeof bits);
+    bits >>= 2;
+    memcpy(&s, &bits, sizeof s);
+    return s;
 }
 
 typedef int hairlut_tally;

@@ -19,7 +19,6 @@ static inline real root(real a) { return _mm256_sqrt_ps(a); }
 static inline real smaller(real a, real b) { return _mm256_min_ps(a, b); }
 static inline real larger(real a, real b) { return _mm256_max_ps(a, b); }
 static inline real magnitude(real a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
-static inline real times_sign(real a, real b) { return _mm256_xor_ps(a, _mm256_and_ps(b, _mm256_set1_ps(-0.0f))); }
 
 static inline whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
 static inline void istore(int *p, whole a) { _mm256_storeu_si256((__m256i *)p, a); }
@@ -30,6 +29,7 @@ static inline whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); 
 static inline whole ilarger(whole a, whole b) { return _mm256_max_epi32(a, b); }
 static inline whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
 static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
+static inline real shifted(real a) { return _mm256_castsi256_ps(_mm256_srli_epi32(_mm256_castps_si256(a), 2)); }
 static inline real converted(whole a) { return _mm256_cvtepi32_ps(a); }
 
 static inline real quads(const float *p, const int *at)

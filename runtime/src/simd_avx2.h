@@ -12,7 +12,10 @@ static inline mask numbers(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_ORD
 static inline mask both(mask a, mask b) { return _mm256_and_ps(a, b); }
 static inline int every(mask m) { return _mm256_movemask_ps(m) == 0xff; }
 static inline real choose(mask m, real a, real b) { return _mm256_blendv_ps(b, a, m); }
-static inline whole ichoose(mask m, whole a, whole b) { return _mm256_blendv_epi8(b, a, _mm256_castps_si256(m)); }
+static inline whole ichoose(mask m, whole a, whole b)
+{
+    return _mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps(b), _mm256_castsi256_ps(a), m));
+}
 
 #define HAIRLUT_COUNT count_at_most
 static inline unsigned below(const float *a, int stride, float t, float x)

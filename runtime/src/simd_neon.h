@@ -18,11 +18,6 @@ static inline real mul(real a, real b) { return vmulq_f32(a, b); }
 static inline real over(real a, real b) { return vdivq_f32(a, b); }
 static inline real root(real a) { return vsqrtq_f32(a); }
 static inline real magnitude(real a) { return vabsq_f32(a); }
-static inline real times_sign(real a, real b)
-{
-    const uint32x4_t sign = vandq_u32(vreinterpretq_u32_f32(b), vdupq_n_u32(0x80000000u));
-    return vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a), sign));
-}
 static inline mask greater(real a, real b) { return vcgtq_f32(a, b); }
 static inline mask at_least(real a, real b) { return vcgeq_f32(a, b); }
 static inline mask both(mask a, mask b) { return vandq_u32(a, b); }
@@ -42,6 +37,7 @@ static inline whole ilarger(whole a, whole b) { return vmaxq_s32(a, b); }
 static inline whole imul(whole a, whole b) { return vmulq_s32(a, b); }
 static inline whole ichoose(mask m, whole a, whole b) { return vbslq_s32(m, a, b); }
 static inline whole truncated(real a) { return vcvtq_s32_f32(a); }
+static inline real shifted(real a) { return vreinterpretq_f32_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 2)); }
 static inline real converted(whole a) { return vcvtq_f32_s32(a); }
 
 static inline void gather4(const float *p, const int *at, real x[4])

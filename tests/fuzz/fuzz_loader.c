@@ -43,7 +43,7 @@ static void use(const hairlut_exr_table *loaded, int is_azimuth)
 {
     static const float theta[8] = {-1.57079637f, -0.5f, 0.5f, 1.57079637f, -1.57079637f, -0.5f, 0.5f, 1.57079637f};
     static const float phi[8] = {0.0f, 2.0f, 4.0f, 6.28318548f, 0.0f, 2.0f, 4.0f, 6.28318548f};
-    const hairlut_table straight = {theta, 4, 2, -1.5f, 1.5f, theta[0], theta[3], HAIRLUT_WARP_QUARTIC, 1e-6f, 0.9f};
+    const hairlut_table straight = {theta, 4, 2, -1.5f, 1.5f, theta[0], theta[3], HAIRLUT_WARP_OCTAVES, 1e-6f, 0.9f};
     const hairlut_table circle = {phi, 4, 2, -1.5f, 1.5f, phi[0], phi[3], HAIRLUT_WARP_UNIFORM, 0.0f, 0.0f};
     const hairlut_model_desc desc = {is_azimuth ? straight : loaded->table, is_azimuth ? loaded->table : circle,
                                      is_azimuth ? straight : loaded->table, loaded->azimuth};

@@ -64,7 +64,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     t.theta_r_max = flags & 1 ? take_float(&r) : 1.57079637f;
     t.domain_min = flags & 2 ? take_float(&r) : -1.57079637f;
     t.domain_max = flags & 2 ? take_float(&r) : 1.57079637f;
-    t.warp = flags & 4 ? (hairlut_warp)(take_byte(&r) % 3) : HAIRLUT_WARP_QUARTIC;
+    t.warp = flags & 4 ? (hairlut_warp)(take_byte(&r) % 3) : HAIRLUT_WARP_OCTAVES;
     t.warp_e = flags & 8 ? take_float(&r) : 3.8e-6f;
     t.cell_limit = flags & 16 ? take_float(&r) : 0.9f;
     const float theta_r = take_float(&r), phi_r = take_float(&r), u_theta = take_float(&r), u_phi = take_float(&r);
@@ -74,7 +74,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         else
             grow_row(&r, texels + j * t.width, t.width, t.domain_min, t.domain_max);
     }
-    const hairlut_table circle = {phi, 4, 2, -1.5f, 1.5f, phi[0], phi[3], HAIRLUT_WARP_QUARTIC, 1e-6f, 0.9f};
+    const hairlut_table circle = {phi, 4, 2, -1.5f, 1.5f, phi[0], phi[3], HAIRLUT_WARP_OCTAVES, 1e-6f, 0.9f};
     const hairlut_model_desc desc = {t, circle, t, flags & 64 ? HAIRLUT_AZIMUTH_SUM : HAIRLUT_AZIMUTH_DIFFERENCE};
     hairlut_model *model;
     char message[HAIRLUT_MESSAGE_SIZE];

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 
+from hairlut.warp import Warp
+
 HERE = Path(__file__).resolve().parent
 COMPRESSIONS = {
     "none": OpenEXR.NO_COMPRESSION,
@@ -22,14 +24,7 @@ def small_table(name: str, warp: str, compression: int) -> tuple[dict, np.ndarra
     """Header and texels of a 6 x 3 table that the loader accepts."""
     azimuth = name == "direct_phi"
     low, high = (0.0, 2 * np.pi) if azimuth else (-np.pi / 2, np.pi / 2)
-    c = np.arange(6)
-    folded = np.minimum(c, 5 - c)
-    if warp == "uniform":
-        m = folded / 5
-    else:
-        f0, f1 = 2.0**-4.5, (0.5 + 2.0**-18) ** 0.25
-        m = (f0 + 2 * (f1 - f0) / 5 * folded) ** 4 - 2.0**-18
-    knots = np.where(c <= 2, m, 1 - m)
+    knots = Warp.parse(warp).u(6)
     row = np.linspace(low, high, 6, dtype=np.float32)
     row[[0, -1]] = np.float32([low, high])
     return {
@@ -42,7 +37,7 @@ def small_table(name: str, warp: str, compression: int) -> tuple[dict, np.ndarra
         "hairlut.unit": "rad",
         "hairlut.azimuth": "sum" if azimuth else "none",
         "hairlut.warp": warp,
-        "hairlut.cell": "linear" if warp == "uniform" else "quadratic limit=0.9",
+        "hairlut.cell": "linear" if warp == "uniform" else "parabola limit=0.9",
         "hairlut.theta_r_range": "-1.5707963267948966 1.5707963267948966",
         "hairlut.domain": f"{low!r} {high!r}",
         "hairlut.knots": " ".join(repr(float(u)) for u in knots),
@@ -52,7 +47,7 @@ def small_table(name: str, warp: str, compression: int) -> tuple[dict, np.ndarra
 def write_loader() -> None:
     folder = HERE / "corpus" / "loader"
     for label, compression in COMPRESSIONS.items():
-        for name, warp in (("direct_theta", f"quartic e={2.0**-18!r}"), ("direct_phi", "uniform")):
+        for name, warp in (("direct_theta", f"octaves e={2.0**-18!r}"), ("direct_phi", "uniform")):
             header, texels = small_table(name, warp, compression)
             OpenEXR.File(header, {"Y": texels}).write(str(folder / f"{name}_{label}.exr"))
 

@@ -283,7 +283,7 @@ int main(void)
         check_set(sets[s], hairlut_builtin("printed"), 200);
         check_set(sets[s], hairlut_builtin("fitted"), 200);
         for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k) {
-            hairlut_model *model = make_model(sizes[k][0], sizes[k][1], k % 4 == 3 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_QUARTIC,
+            hairlut_model *model = make_model(sizes[k][0], sizes[k][1], k % 4 == 3 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES,
                                               k % 2 ? HAIRLUT_AZIMUTH_SUM : HAIRLUT_AZIMUTH_DIFFERENCE);
             check_set(sets[s], model, 20);
             hairlut_free(model);

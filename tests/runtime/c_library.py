@@ -169,13 +169,12 @@ class Model:
         self._loop("axis_invert", AXES.index(axis), *inputs, out)
         return out
 
-    def axis_cell(self, axis: str, theta_r, x) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(index, width, curvature) of the cell that holds an angle of one table."""
+    def axis_cell_width(self, axis: str, theta_r, x) -> np.ndarray:
+        """Width of the cell that holds an angle of one table."""
         inputs = _floats(theta_r, x)
-        index = np.empty(inputs[0].shape, np.int32)
-        d, c = np.empty_like(inputs[0]), np.empty_like(inputs[0])
-        self._loop("axis_cell", AXES.index(axis), *inputs, index, d, c)
-        return index, d, c
+        out = np.empty_like(inputs[0])
+        self._loop("axis_cell_width", AXES.index(axis), *inputs, out)
+        return out
 
     def _loop(self, function: str, which: int, *arrays: np.ndarray) -> None:
         pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in arrays]

@@ -123,7 +123,7 @@ static hairlut_table straight(int azimuth)
     const float low = azimuth ? 0.0f : -1.57079637f, high = azimuth ? 6.28318548f : 1.57079637f;
     for (int k = 0; k < HEIGHT * WIDTH; ++k)
         texels[azimuth][k] = k % WIDTH == WIDTH - 1 ? high : low + (high - low) * (float)(k % WIDTH) / (WIDTH - 1);
-    const hairlut_table table = {texels[azimuth], WIDTH, HEIGHT, -1.5f, 1.5f, low, high, HAIRLUT_WARP_QUARTIC, 1e-6f, 0.9f};
+    const hairlut_table table = {texels[azimuth], WIDTH, HEIGHT, -1.5f, 1.5f, low, high, HAIRLUT_WARP_OCTAVES, 1e-6f, 0.9f};
     return table;
 }
 

@@ -61,14 +61,15 @@ LOOP void axis_sample(const hairlut_model *model, int axis, size_t n, const floa
     for (size_t i = 0; i < n; ++i) {
         const hairlut_draw draw = hairlut_axis_sample(axis_of(model, axis), theta_r[i], u[i]);
         x[i] = hairlut_axis_inside(axis_of(model, axis), draw.x);
-        pdf[i] = draw.pdf;
+        pdf[i] = 1.0f / draw.slope;
     }
 }
 
 LOOP void axis_pdf(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, float *pdf)
 {
+    const hairlut_axis *a = axis_of(model, axis);
     for (size_t i = 0; i < n; ++i)
-        pdf[i] = hairlut_axis_pdf(axis_of(model, axis), theta_r[i], x[i]);
+        pdf[i] = hairlut_axis_holds(a, x[i]) / hairlut_axis_slope(a, hairlut_axis_look_up(a, theta_r[i], x[i]), x[i]);
 }
 
 LOOP void axis_invert(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, float *u)
@@ -77,17 +78,13 @@ LOOP void axis_invert(const hairlut_model *model, int axis, size_t n, const floa
         u[i] = hairlut_axis_invert(axis_of(model, axis), theta_r[i], x[i]);
 }
 
-/* The cell that holds x: its width and curvature, and du/dcolumn at x. */
-LOOP void axis_cell(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, int *index, float *d,
-                    float *c)
+/* The width, in x, of the cell that holds x. */
+LOOP void axis_cell_width(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, float *width)
 {
     for (size_t i = 0; i < n; ++i) {
         const hairlut_axis *a = axis_of(model, axis);
-        const hairlut_row row = hairlut_axis_row(a, theta_r[i]);
-        int nearer, high;
-        index[i] = hairlut_axis_find(a, row, x[i]);
-        const hairlut_cell cell = hairlut_axis_found(a, row, index[i], &nearer, &high);
-        d[i] = fabsf(cell.a - cell.c);
-        c[i] = cell.c;
+        const hairlut_found found = hairlut_axis_look_up(a, theta_r[i], x[i]);
+        const float *low = a->rows + (ptrdiff_t)found.row.j * a->stride + found.cell, *high = low + a->stride;
+        width[i] = hairlut_blend(low[1], high[1], found.row.t) - hairlut_blend(low[0], high[0], found.row.t);
     }
 }

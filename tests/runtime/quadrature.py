@@ -11,10 +11,9 @@ GRADED = np.array([0.0, 0.001, 0.004, 0.016, 0.064, 0.25, 0.5, 0.75, 0.936, 0.98
 
 
 def panels(model: Model, axis: str, theta_r: float, knots: np.ndarray, edges=()) -> np.ndarray:
-    """Increasing ends of panels in which the density is smooth: the angles of the knots, of u = 1/2, where
-    the warp folds, and edges; between them steps that shrink towards both ends, where the slope of a curved
-    cell may all but vanish."""
-    x, _ = model.axis_sample(axis, theta_r, np.union1d(knots, [0.5]))
+    """Increasing ends of panels in which the density is smooth: the angles of the knots, and edges; between
+    them steps that shrink towards both ends, where the slope of a curved cell may all but vanish."""
+    x, _ = model.axis_sample(axis, theta_r, knots)
     low, high = x[0], x[-1]
     inner = [edge for edge in np.float32(edges) if low < edge < high]
     ends = np.unique(np.concatenate([x, np.array(inner, np.float32)]))

@@ -10,7 +10,7 @@ from runtime.c_library import AXES, MESSAGE_SIZE, OK, ROOT, LoadError, Model, co
 
 HALF_PI = np.float32(np.pi / 2)
 TWO_PI = np.float32(2 * np.pi)
-UNIFORM, QUARTIC = 0, 1
+UNIFORM, OCTAVES = 0, 1
 DIFFERENCE, SUM = 0, 1
 
 
@@ -43,7 +43,7 @@ class MemoryTable:
     texels: np.ndarray | None
     domain: tuple[float, float] = (-HALF_PI, HALF_PI)
     theta_r_range: tuple[float, float] = (-HALF_PI, HALF_PI)
-    warp: int = QUARTIC
+    warp: int = OCTAVES
     warp_e: float = 2.0**-18
     cell_limit: float = 0.9
     size: tuple[int, int] | None = None  # width, height, where the texels' shape is not to be told

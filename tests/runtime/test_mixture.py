@@ -182,7 +182,7 @@ def coarse(name: str) -> Model:
     """Tables of 8x5 texels, far from the lobes between their knots."""
     exact, width, e = lobes.find_model(name), 8, 2.0**-10
     rows, columns = np.linspace(-np.pi / 2, np.pi / 2, 5), np.arange(width)
-    m = Warp("quartic", e).unfold(np.minimum(columns, width - 1 - columns), width)
+    m = Warp("octaves", e).unfold(np.minimum(columns, width - 1 - columns), width)
     tables = []
     for lobe in exact.lobes:
         domain = np.float32(lobe.domain)

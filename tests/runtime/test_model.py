@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 from runtime.c_library import ARGUMENT, AXES, LOBES, MEMORY, MODELS, OK, ROOT, TABLE, LoadError, builtin, core
-from runtime.tables import HALF_PI, QUARTIC, TWO_PI, UNIFORM, Allocator, straight
+from runtime.tables import HALF_PI, OCTAVES, TWO_PI, UNIFORM, Allocator, straight
 
 from hairlut import exr
 from runtime import tables
@@ -153,7 +153,7 @@ def test_tables_from_memory_give_the_compiled_in_models_bits(name):
     parts = []
     for axis in AXES:
         t = exr.read(ROOT / "luts" / name / f"{axis}.exr")[0]
-        warp = {"uniform": UNIFORM, "quartic": QUARTIC}[t.warp.name]
+        warp = {"uniform": UNIFORM, "octaves": OCTAVES}[t.warp.name]
         parts.append(tables.MemoryTable(t.texels, t.domain, t.theta_r_range, warp, t.warp.e, t.cell.limit))
     azimuth = {"printed": tables.SUM, "fitted": tables.DIFFERENCE}[name]
     model = tables.create(*parts, azimuth=azimuth)

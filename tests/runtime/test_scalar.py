@@ -80,7 +80,7 @@ def test_density_is_the_one_read_in_double_precision(model, axis, table):
     theta_r, u = draws(4)
     x, sampled = model.axis_sample(axis, theta_r, u)
     evaluated = model.axis_pdf(axis, theta_r, x)
-    wide = model.axis_cell(axis, theta_r, x)[1] >= 2**14 * step(table)
+    wide = model.axis_cell_width(axis, theta_r, x) >= 2**14 * step(table)
     # 4e-5 is the share of the row position, a float too; narrow cells lie beside others far more dense
     for which, points, tolerance in ((wide, 5, 5e-5), (~wide, 129, 0.1)):
         low, high = density_range(table, theta_r[which], x[which], 8, points)
@@ -93,7 +93,7 @@ def test_density_of_a_sample_is_the_density_evaluated_there(model, axis, table):
     theta_r, u = draws(5)
     x, sampled = model.axis_sample(axis, theta_r, u)
     relative = np.abs(model.axis_pdf(axis, theta_r, x) / sampled.astype(float) - 1)
-    wide = model.axis_cell(axis, theta_r, x)[1] >= WIDE * step(table)
+    wide = model.axis_cell_width(axis, theta_r, x) >= WIDE * step(table)
     low, high = density_range(table, theta_r, x, 2)
     spread = high / low - 1
     assert relative[wide & (spread < 5e-6)].max() <= RELATIVE

@@ -27,7 +27,7 @@
 #define HAIRLUT_HLSL
 
 #define HAIRLUT_WARP_UNIFORM 0
-#define HAIRLUT_WARP_QUARTIC 1
+#define HAIRLUT_WARP_OCTAVES 1
 #define HAIRLUT_AZIMUTH_DIFFERENCE 0
 #define HAIRLUT_AZIMUTH_SUM 1
 
@@ -41,7 +41,7 @@ struct hairlut_axis {
     float row_scale;  // rows per radian of theta_r
     float low;        // the domain, rad
     float high;
-    float e;          // quartic warp: (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column
+    float e;          // octaves: F(m + e) = f0 + k c, m = min(u, 1-u), c the folded column
     float f0;
     float k;          // uniform warp: m = k c
     float limit;      // of a cell's curvature, relative to its width
@@ -137,7 +137,8 @@ float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)
 
 /* The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
  * x(f) = x0 + f (d + c (1-f)) and dx/df = d + c (1-2f), where d is the cell's width and c its curvature, taken from the
- * widths of both neighbours. The density is du/dx. */
+ * widths of both neighbours. u runs evenly with f, over the cell's width h in u: the density is h / |dx/df|. All is counted
+ * from the nearer end of the u axis, where m = min(u, 1-u); seen from the high end, d is negative. */
 
 struct hairlut_rows {
     int row;  // below theta_r
@@ -145,15 +146,15 @@ struct hairlut_rows {
 };
 
 struct hairlut_cell {
-    float x0, d, c;
+    float x0, d, c; // in x
+    float m0, h;    // nearer knot and width in u
 };
 
-/* A place on the u axis: cell, counted from the low or the high end, fraction of it, counted likewise, and du/dcolumn there. */
+/* A place on the u axis: m = min(u, 1-u), and its cell, counted from the low or the high end. */
 struct hairlut_knot {
     int i;
     bool high;
-    float f;
-    float du;
+    float m;
 };
 
 struct hairlut_draw {
@@ -194,89 +195,89 @@ float hairlut_texel(hairlut_axis axis, hairlut_rows rows, int i)
     return hairlut_blend(a, b, rows.t);
 }
 
-/* (nearer end, width, curvature) of a cell of one row, n columns from the low end. The curvature comes from the widths of both
- * neighbours, at an end of the row from the one that there is. Seen from the high end the width is negative. */
-float3 hairlut_row_cell(hairlut_axis axis, int row, int n, bool high)
+/* The curve F of octaves: near a fourth root, a straight line in each octave of s. */
+float hairlut_curve(float s)
 {
-    int last = axis.columns - 1;
-    float x0 = HAIRLUT_FETCH(axis.table, n, row);
-    float x1 = HAIRLUT_FETCH(axis.table, n + 1, row);
+    return asfloat((asuint(s) >> 2) + 0x30000000u);
+}
+
+/* s of y = F(s) */
+float hairlut_curve_back(float y)
+{
+    return asfloat((asuint(y) - 0x30000000u) << 2);
+}
+
+/* The distance in u of knot n, counted from an end, from that end. */
+float hairlut_axis_tail(hairlut_axis axis, int n)
+{
+    int mirrored = axis.columns - 1 - n;
+    precise float y = axis.f0 + axis.k * float(min(n, mirrored));
+    precise float m = axis.warp == HAIRLUT_WARP_OCTAVES ? hairlut_curve_back(y) - axis.e : y;
+    m = n == 0 ? 0.0 : m;
+    return n > mirrored ? 1.0 - m : m;
+}
+
+/* Texel n of a row, counted from the low or the high end. */
+float hairlut_row_texel(hairlut_axis axis, int row, int n, bool high)
+{
+    return HAIRLUT_FETCH(axis.table, high ? axis.columns - 1 - n : n, row);
+}
+
+/* dx/du at the knot between two cells, from their widths in x and in u: the density there is that of both, blended in x. */
+float hairlut_knot_slope(float d0, float d1, float h0, float h1)
+{
+    return (d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1);
+}
+
+/* (nearer end, width, curvature) of cell i of one row. h: the widths in u of the cell before, the cell, and the one behind it,
+ * which there always is, as a cell is counted from the nearer end. */
+float3 hairlut_row_cell(hairlut_axis axis, int row, int i, bool high, float3 h)
+{
+    float x0 = hairlut_row_texel(axis, row, i, high);
+    float x1 = hairlut_row_texel(axis, row, i + 1, high);
     float d = x1 - x0;
-    bool inner = n > 0 && n < last - 1;
-    float before = n > 0 ? x0 - HAIRLUT_FETCH(axis.table, max(n - 1, 0), row) : d;
-    float after = n < last - 1 ? HAIRLUT_FETCH(axis.table, min(n + 2, last), row) - x1 : d;
-    float bound = axis.limit * d;
-    float c = clamp((inner ? 0.25 : 1.0) * (before - after), -bound, bound);
-    return float3(high ? x1 : x0, high ? -d : d, c);
+    float before = x0 - hairlut_row_texel(axis, row, max(i - 1, 0), high);
+    float after = hairlut_row_texel(axis, row, i + 2, high) - x1;
+    float c;
+    if (i == 0)
+        c = d - h.y * after / h.z;
+    else
+        c = 0.5 * h.y * (hairlut_knot_slope(before, d, h.x, h.y) - hairlut_knot_slope(d, after, h.y, h.z));
+    float bound = axis.limit * abs(d);
+    return float3(x0, d, clamp(c, -bound, bound));
 }
 
 /* Cell i, counted from the low or the high end. Each row's cell is taken before they are blended: neighbouring texels subtract
  * without rounding. */
 hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, int i, bool high)
 {
-    int n = high ? axis.columns - 2 - i : i;
-    float3 a = hairlut_row_cell(axis, rows.row, n, high);
-    float3 b = hairlut_row_cell(axis, rows.row + 1, n, high);
+    float m0 = hairlut_axis_tail(axis, i);
+    float m1 = hairlut_axis_tail(axis, i + 1);
+    float3 h = float3(m0 - hairlut_axis_tail(axis, max(i - 1, 0)), m1 - m0, hairlut_axis_tail(axis, i + 2) - m1);
+    float3 a = hairlut_row_cell(axis, rows.row, i, high, h);
+    float3 b = hairlut_row_cell(axis, rows.row + 1, i, high, h);
     hairlut_cell cell;
     cell.x0 = hairlut_blend_part(a.x, b.x, rows.t);
     cell.d = hairlut_blend_part(a.y, b.y, rows.t);
     cell.c = hairlut_blend_part(a.z, b.z, rows.t);
+    cell.m0 = m0;
+    cell.h = h.y;
     return cell;
 }
 
-/* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */
+/* u to cell. The fold at u = 1/2 keeps the relative precision of both tails. */
 hairlut_knot hairlut_axis_knot(hairlut_axis axis, float number)
 {
     float u = clamp(hairlut_tame(number, 0.0), 0.0, 1.0);
     precise float m = u <= 0.5 ? u : 1.0 - u;
-    float c, du;
-    if (axis.warp == HAIRLUT_WARP_QUARTIC) {
-        precise float sum = m + axis.e;
-        float y = sqrt(sqrt(sum));
-        c = (y - axis.f0) * axis.inverse_k;
-        du = 4.0 * axis.k * (y * (y * y));
-    } else {
-        c = m * axis.inverse_k;
-        du = axis.k;
-    }
-    c = clamp(c, 0.0, 0.5 * float(axis.columns - 1));
+    precise float sum = m + axis.e;
+    float y = axis.warp == HAIRLUT_WARP_OCTAVES ? hairlut_curve(sum) : m;
+    precise float c = y * axis.inverse_k - axis.f0 * axis.inverse_k; // rounded as in C, for the same cell beside a knot
     hairlut_knot knot;
-    knot.i = int(c);
+    knot.i = min(int(max(c, 0.0)), (axis.columns - 1) / 2);
     knot.high = u > 0.5;
-    knot.f = c - float(knot.i);
-    knot.du = du;
+    knot.m = m;
     return knot;
-}
-
-/* (column, its mirror image) of a place in cell i, counted from one end. */
-float2 hairlut_columns(hairlut_axis axis, int i, float f)
-{
-    float column = float(i) + f;
-    return float2(column, float(axis.columns - 1) - column);
-}
-
-/* du/dcolumn at a place given by cell and fraction. The middle cell of an even number of columns is seen from the low end; beyond
- * its middle the high end is nearer. */
-float hairlut_axis_du(hairlut_axis axis, int i, float f)
-{
-    if (axis.warp != HAIRLUT_WARP_QUARTIC)
-        return axis.k;
-    float2 columns = hairlut_columns(axis, i, f);
-    float y = axis.f0 + axis.k * min(columns.x, columns.y);
-    return 4.0 * axis.k * (y * (y * y));
-}
-
-/* Column to u. */
-float hairlut_axis_u(hairlut_axis axis, int i, bool high, float f)
-{
-    float2 columns = hairlut_columns(axis, i, f);
-    float m = axis.k * min(columns.x, columns.y);
-    if (axis.warp == HAIRLUT_WARP_QUARTIC) {
-        float y = axis.f0 + m;
-        m *= (y + axis.f0) * (y * y + axis.f0 * axis.f0); // y^4 - f0^4 without its cancellation
-    }
-    m = clamp(m, 0.0, 0.5);
-    return high || columns.y < columns.x ? 1.0 - m : m;
 }
 
 /* The cell whose blended texels enclose x. */
@@ -309,12 +310,20 @@ hairlut_draw hairlut_axis_sample(hairlut_axis axis, float theta_r, float u)
 {
     hairlut_knot knot = hairlut_axis_knot(axis, u);
     hairlut_cell cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i, knot.high);
-    float x = cell.x0 + knot.f * (cell.d + cell.c * (1.0 - knot.f));
-    float slope = abs(cell.d + cell.c * (1.0 - 2.0 * knot.f));
+    float f = (knot.m - cell.m0) / cell.h;
+    float x = cell.x0 + f * (cell.d + cell.c * (1.0 - f));
+    float slope = abs(cell.d + cell.c * (1.0 - 2.0 * f));
     hairlut_draw draw;
     draw.x = clamp(x, axis.low, axis.high);
-    draw.pdf = knot.du / slope;
+    draw.pdf = cell.h / slope;
     return draw;
+}
+
+/* Cell n of a row, counted from the low end, as seen from the nearer end. */
+hairlut_cell hairlut_axis_found(hairlut_axis axis, hairlut_rows rows, int n)
+{
+    bool high = n >= axis.columns / 2;
+    return hairlut_axis_cell(axis, rows, high ? axis.columns - 2 - n : n, high);
 }
 
 /* Density per rad of hairlut_axis_sample at x; 0 outside the domain and for NaN. */
@@ -323,11 +332,8 @@ float hairlut_axis_pdf(hairlut_axis axis, float theta_r, float x)
     if (hairlut_is_nan(x) || x < axis.low || x > axis.high)
         return 0.0;
     hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
-    int n = hairlut_axis_find(axis, rows, x);
-    bool high = n >= axis.columns / 2;
-    int i = high ? axis.columns - 2 - n : n;
-    float2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
-    return hairlut_axis_du(axis, i, place.x) / place.y;
+    hairlut_cell cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
+    return cell.h / hairlut_cell_solve(cell, x).y;
 }
 
 /* The u that hairlut_axis_sample turns into x; outside the domain the nearer end's, 0 for NaN. */
@@ -335,11 +341,9 @@ float hairlut_axis_invert(hairlut_axis axis, float theta_r, float number)
 {
     float x = hairlut_tame(number, axis.low);
     hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
-    int n = hairlut_axis_find(axis, rows, x);
-    bool high = n >= axis.columns / 2;
-    int i = high ? axis.columns - 2 - n : n;
-    float2 place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
-    return hairlut_axis_u(axis, i, high, place.x);
+    hairlut_cell cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
+    float m = clamp(cell.m0 + cell.h * hairlut_cell_solve(cell, x).x, 0.0, 1.0);
+    return cell.d < 0.0 ? 1.0 - m : m;
 }
 
 /* ---- the two lobes -------------------------------------------------------------------------------------------- */

@@ -29,7 +29,7 @@
  * tail its precision; WGSL has no way to forbid it. */
 
 const hairlut_warp_uniform: i32 = 0;
-const hairlut_warp_quartic: i32 = 1;
+const hairlut_warp_octaves: i32 = 1;
 const hairlut_azimuth_difference: i32 = 0;
 const hairlut_azimuth_sum: i32 = 1;
 
@@ -43,7 +43,7 @@ struct hairlut_axis {
     row_scale: f32,  // rows per radian of theta_r
     low: f32,        // the domain, rad
     high: f32,
-    e: f32,          // quartic warp: (m + e)^(1/4) = f0 + k c, m = min(u, 1-u), c the folded column
+    e: f32,          // octaves: F(m + e) = f0 + k c, m = min(u, 1-u), c the folded column
     f0: f32,
     k: f32,          // uniform warp: m = k c
     limit: f32,      // of a cell's curvature, relative to its width
@@ -123,7 +123,8 @@ fn hairlut_pdf_to_solid_angle(pdf_angle: f32, theta_i: f32) -> f32 {
 
 /* The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
  * x(f) = x0 + f (d + c (1-f)) and dx/df = d + c (1-2f), where d is the cell's width and c its curvature, taken from the
- * widths of both neighbours. The density is du/dx. */
+ * widths of both neighbours. u runs evenly with f, over the cell's width h in u: the density is h / |dx/df|. All is counted
+ * from the nearer end of the u axis, where m = min(u, 1-u); seen from the high end, d is negative. */
 
 struct hairlut_rows {
     row: i32, // below theta_r
@@ -131,17 +132,18 @@ struct hairlut_rows {
 }
 
 struct hairlut_cell {
-    x0: f32,
+    x0: f32, // in x
     d: f32,
     c: f32,
+    m0: f32, // nearer knot and width in u
+    h: f32,
 }
 
-/* A place on the u axis: cell, counted from the low or the high end, fraction of it, counted likewise, and du/dcolumn there. */
+/* A place on the u axis: m = min(u, 1-u), and its cell, counted from the low or the high end. */
 struct hairlut_knot {
     i: i32,
     high: bool,
-    f: f32,
-    du: f32,
+    m: f32,
 }
 
 struct hairlut_draw {
@@ -173,74 +175,75 @@ fn hairlut_texel(axis: hairlut_axis, rows: hairlut_rows, i: i32) -> f32 {
     return hairlut_blend(a, b, rows.t);
 }
 
-/* (nearer end, width, curvature) of a cell of one row, n columns from the low end. The curvature comes from the widths of both
- * neighbours, at an end of the row from the one that there is. Seen from the high end the width is negative. */
-fn hairlut_row_cell(axis: hairlut_axis, row: i32, n: i32, high: bool) -> vec3f {
-    let last = axis.columns - 1;
-    let x0 = hairlut_fetch(axis.table, n, row);
-    let x1 = hairlut_fetch(axis.table, n + 1, row);
+/* The curve F of octaves: near a fourth root, a straight line in each octave of s. */
+fn hairlut_curve(s: f32) -> f32 {
+    return bitcast<f32>((bitcast<u32>(s) >> 2u) + 0x30000000u);
+}
+
+/* s of y = F(s) */
+fn hairlut_curve_back(y: f32) -> f32 {
+    return bitcast<f32>((bitcast<u32>(y) - 0x30000000u) << 2u);
+}
+
+/* The distance in u of knot n, counted from an end, from that end. */
+fn hairlut_axis_tail(axis: hairlut_axis, n: i32) -> f32 {
+    let mirrored = axis.columns - 1 - n;
+    var m = axis.f0 + axis.k * f32(min(n, mirrored));
+    if (axis.warp == hairlut_warp_octaves) {
+        m = hairlut_curve_back(m) - axis.e;
+    }
+    m = select(m, 0.0, n == 0);
+    return select(m, 1.0 - m, n > mirrored);
+}
+
+/* Texel n of a row, counted from the low or the high end. */
+fn hairlut_row_texel(axis: hairlut_axis, row: i32, n: i32, high: bool) -> f32 {
+    return hairlut_fetch(axis.table, select(n, axis.columns - 1 - n, high), row);
+}
+
+/* dx/du at the knot between two cells, from their widths in x and in u: the density there is that of both, blended in x. */
+fn hairlut_knot_slope(d0: f32, d1: f32, h0: f32, h1: f32) -> f32 {
+    return (d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1);
+}
+
+/* (nearer end, width, curvature) of cell i of one row. h: the widths in u of the cell before, the cell, and the one behind it,
+ * which there always is, as a cell is counted from the nearer end. */
+fn hairlut_row_cell(axis: hairlut_axis, row: i32, i: i32, high: bool, h: vec3f) -> vec3f {
+    let x0 = hairlut_row_texel(axis, row, i, high);
+    let x1 = hairlut_row_texel(axis, row, i + 1, high);
     let d = x1 - x0;
-    let inner = n > 0 && n < last - 1;
-    let before = select(d, x0 - hairlut_fetch(axis.table, max(n - 1, 0), row), n > 0);
-    let after = select(d, hairlut_fetch(axis.table, min(n + 2, last), row) - x1, n < last - 1);
-    let bound = axis.limit * d;
-    let c = clamp(select(1.0, 0.25, inner) * (before - after), -bound, bound);
-    return select(vec3f(x0, d, c), vec3f(x1, -d, c), high);
+    let before = x0 - hairlut_row_texel(axis, row, max(i - 1, 0), high);
+    let after = hairlut_row_texel(axis, row, i + 2, high) - x1;
+    var c = d - h.y * after / h.z;
+    if (i > 0) {
+        c = 0.5 * h.y * (hairlut_knot_slope(before, d, h.x, h.y) - hairlut_knot_slope(d, after, h.y, h.z));
+    }
+    let bound = axis.limit * abs(d);
+    return vec3f(x0, d, clamp(c, -bound, bound));
 }
 
 /* Cell i, counted from the low or the high end. Each row's cell is taken before they are blended: neighbouring texels subtract
  * without rounding. */
 fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32, high: bool) -> hairlut_cell {
-    let n = select(i, axis.columns - 2 - i, high);
-    let a = hairlut_row_cell(axis, rows.row, n, high);
-    let b = hairlut_row_cell(axis, rows.row + 1, n, high);
+    let m0 = hairlut_axis_tail(axis, i);
+    let m1 = hairlut_axis_tail(axis, i + 1);
+    let h = vec3f(m0 - hairlut_axis_tail(axis, max(i - 1, 0)), m1 - m0, hairlut_axis_tail(axis, i + 2) - m1);
+    let a = hairlut_row_cell(axis, rows.row, i, high, h);
+    let b = hairlut_row_cell(axis, rows.row + 1, i, high, h);
     return hairlut_cell(hairlut_blend_part(a.x, b.x, rows.t), hairlut_blend_part(a.y, b.y, rows.t),
-                        hairlut_blend_part(a.z, b.z, rows.t));
+                        hairlut_blend_part(a.z, b.z, rows.t), m0, h.y);
 }
 
-/* u to column. The fold at u = 1/2 keeps the relative precision of both tails. */
+/* u to cell. The fold at u = 1/2 keeps the relative precision of both tails. */
 fn hairlut_axis_knot(axis: hairlut_axis, number: f32) -> hairlut_knot {
     let u = clamp(hairlut_tame(number, 0.0), 0.0, 1.0);
     let m = select(1.0 - u, u, u <= 0.5);
-    var c = m * axis.inverse_k;
-    var du = axis.k;
-    if (axis.warp == hairlut_warp_quartic) {
-        let y = sqrt(sqrt(m + axis.e));
-        c = (y - axis.f0) * axis.inverse_k;
-        du = 4.0 * axis.k * (y * (y * y));
+    var y = m;
+    if (axis.warp == hairlut_warp_octaves) {
+        y = hairlut_curve(m + axis.e);
     }
-    c = clamp(c, 0.0, 0.5 * f32(axis.columns - 1));
-    let i = i32(c);
-    return hairlut_knot(i, u > 0.5, c - f32(i), du);
-}
-
-/* (column, its mirror image) of a place in cell i, counted from one end. */
-fn hairlut_columns(axis: hairlut_axis, i: i32, f: f32) -> vec2f {
-    let column = f32(i) + f;
-    return vec2f(column, f32(axis.columns - 1) - column);
-}
-
-/* du/dcolumn at a place given by cell and fraction. The middle cell of an even number of columns is seen from the low end; beyond
- * its middle the high end is nearer. */
-fn hairlut_axis_du(axis: hairlut_axis, i: i32, f: f32) -> f32 {
-    if (axis.warp != hairlut_warp_quartic) {
-        return axis.k;
-    }
-    let columns = hairlut_columns(axis, i, f);
-    let y = axis.f0 + axis.k * min(columns.x, columns.y);
-    return 4.0 * axis.k * (y * (y * y));
-}
-
-/* Column to u. */
-fn hairlut_axis_u(axis: hairlut_axis, i: i32, high: bool, f: f32) -> f32 {
-    let columns = hairlut_columns(axis, i, f);
-    var m = axis.k * min(columns.x, columns.y);
-    if (axis.warp == hairlut_warp_quartic) {
-        let y = axis.f0 + m;
-        m *= (y + axis.f0) * (y * y + axis.f0 * axis.f0); // y^4 - f0^4 without its cancellation
-    }
-    m = clamp(m, 0.0, 0.5);
-    return select(m, 1.0 - m, high || columns.y < columns.x);
+    let c = y * axis.inverse_k - axis.f0 * axis.inverse_k; // the cell's part of it as C rounds it
+    return hairlut_knot(min(i32(max(c, 0.0)), (axis.columns - 1) / 2), u > 0.5, m);
 }
 
 /* The cell whose blended texels enclose x. */
@@ -273,9 +276,16 @@ fn hairlut_cell_solve(cell: hairlut_cell, x: f32) -> vec2f {
 fn hairlut_axis_sample(axis: hairlut_axis, theta_r: f32, u: f32) -> hairlut_draw {
     let knot = hairlut_axis_knot(axis, u);
     let cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i, knot.high);
-    let x = cell.x0 + knot.f * (cell.d + cell.c * (1.0 - knot.f));
-    let slope = abs(cell.d + cell.c * (1.0 - 2.0 * knot.f));
-    return hairlut_draw(clamp(x, axis.low, axis.high), knot.du / slope);
+    let f = (knot.m - cell.m0) / cell.h;
+    let x = cell.x0 + f * (cell.d + cell.c * (1.0 - f));
+    let slope = abs(cell.d + cell.c * (1.0 - 2.0 * f));
+    return hairlut_draw(clamp(x, axis.low, axis.high), cell.h / slope);
+}
+
+/* Cell n of a row, counted from the low end, as seen from the nearer end. */
+fn hairlut_axis_found(axis: hairlut_axis, rows: hairlut_rows, n: i32) -> hairlut_cell {
+    let high = n >= axis.columns / 2;
+    return hairlut_axis_cell(axis, rows, select(n, axis.columns - 2 - n, high), high);
 }
 
 /* Density per rad of hairlut_axis_sample at x; 0 outside the domain and for NaN. */
@@ -284,22 +294,17 @@ fn hairlut_axis_pdf(axis: hairlut_axis, theta_r: f32, x: f32) -> f32 {
         return 0.0;
     }
     let rows = hairlut_axis_rows(axis, theta_r);
-    let n = hairlut_axis_find(axis, rows, x);
-    let high = n >= axis.columns / 2;
-    let i = select(n, axis.columns - 2 - n, high);
-    let place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
-    return hairlut_axis_du(axis, i, place.x) / place.y;
+    let cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
+    return cell.h / hairlut_cell_solve(cell, x).y;
 }
 
 /* The u that hairlut_axis_sample turns into x; outside the domain the nearer end's, 0 for NaN. */
 fn hairlut_axis_invert(axis: hairlut_axis, theta_r: f32, number: f32) -> f32 {
     let x = hairlut_tame(number, axis.low);
     let rows = hairlut_axis_rows(axis, theta_r);
-    let n = hairlut_axis_find(axis, rows, x);
-    let high = n >= axis.columns / 2;
-    let i = select(n, axis.columns - 2 - n, high);
-    let place = hairlut_cell_solve(hairlut_axis_cell(axis, rows, i, high), x);
-    return hairlut_axis_u(axis, i, high, place.x);
+    let cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
+    let m = clamp(cell.m0 + cell.h * hairlut_cell_solve(cell, x).x, 0.0, 1.0);
+    return select(m, 1.0 - m, cell.d < 0.0);
 }
 
 /* ---- the two lobes -------------------------------------------------------------------------------------------- */

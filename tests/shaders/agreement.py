@@ -18,6 +18,7 @@ from shaders.backends import INPUTS, OUTPUTS, Scene
 from hairlut.axis import axis_numbers
 from hairlut.export import read_model
 from hairlut.table import Table
+from hairlut.warp import Warp
 
 ROOT = Path(__file__).parents[2]
 LIBRARY = Path(os.environ.get("HAIRLUT_BUILD", ROOT / "build" / "runtime"))
@@ -28,8 +29,11 @@ NUMBER_TOLERANCE = 1e-5  # of an inverted u
 BORDERING_TOLERANCE = 1e-3  # share of the records
 THETA_R, PHI_R, U_THETA, U_PHI, U_LOBE, WEIGHT, THETA_I, PHI_I = range(INPUTS)
 SAMPLES = {"direct": 0, "multiple": 4, "mixture": 8}
+PER_AREA = [at + 2 for at in SAMPLES.values()]  # the samples' densities, per rad^2 and per steradian
+SOLID = [at + 3 for at in SAMPLES.values()]
 DENSITIES = {"direct": 12, "multiple": 13, "mixture": 14}
 COSINE = 15
+END = {THETA_I: np.float32(np.pi / 2), PHI_I: np.float32(2 * np.pi)}  # of the directions' domains
 NUMBERS = {"direct": 16, "multiple": 18}
 
 
@@ -56,7 +60,7 @@ class Reference:
     def __init__(self, tables: Sequence[Table]) -> None:
         self.texels = [np.ascontiguousarray(t.texels, np.float32) for t in tables]
         pointers = (ctypes.c_void_p * 3)(*(t.ctypes.data for t in self.texels))
-        sizes = np.int32([[t.width, t.height, t.warp.name == "quartic"] for t in tables])
+        sizes = np.int32([[t.width, t.height, t.warp.name == "octaves"] for t in tables])
         numbers = np.float32([[*t.theta_r_range, *t.domain, t.warp.e, t.cell.limit] for t in tables])
         azimuth = int(tables[1].azimuth == "sum")
         self.model = ctypes.c_void_p(harness().create(pointers, _address(sizes), _address(numbers), azimuth))
@@ -180,8 +184,8 @@ def _on_texels(tables: Scene, axis: int, column: int, random: np.random.Generato
 
 def _on_knots(tables: Scene, random: np.random.Generator) -> np.ndarray:
     """Numbers at the knots of direct_theta and the floats beside them."""
-    columns, (e, f0, k) = int(tables.axes[0, 1]), tables.axes[2, :3].astype(float)
-    m = (f0 + k * np.arange(columns // 2)) ** 4 - e
+    columns, octaves, e = int(tables.axes[0, 1]), bool(tables.axes[0, 3]), float(tables.axes[2, 0])
+    m = (Warp("octaves", e) if octaves else Warp("uniform")).unfold(np.arange(columns // 2), columns)
     u = around(np.clip(np.concatenate([m, 1 - m]), 0, 1))
     block = random_records(4 * len(u), int(random.integers(1 << 30)))
     block[:, U_THETA] = np.tile(u, 4)
@@ -219,6 +223,7 @@ def agreement(want_of: Reference, records: np.ndarray, got: np.ndarray) -> Agree
     """Compares a shader's results with C's; asserts what holds exactly: finite, in range, 0 where unknown."""
     assert_rules(records, got)
     want = closer(got, want_of(records), want_of(flushed(records)))
+    want[:, SOLID] = got[:, PER_AREA] * per_steradian(want_of, records, got)
     angles = [at + k for at in SAMPLES.values() for k in (0, 1)]
     off = relative(got, want)
     off[is_unknown(records, "mixture", DENSITIES), DENSITIES["mixture"]] = 0.0
@@ -236,6 +241,17 @@ def agreement(want_of: Reference, records: np.ndarray, got: np.ndarray) -> Agree
         ),
         bordering=int(border.sum()),
     )
+
+
+def per_steradian(want_of: Reference, records: np.ndarray, got: np.ndarray) -> np.ndarray:
+    """(n, 3) C's 1/cos(theta_i) at the angles that the shader drew: beside the pole, the step of a float that
+    these may be off is a large part of the cosine."""
+    parts = []
+    for at in SAMPLES.values():
+        moved = records.copy()
+        moved[:, THETA_I] = got[:, at]
+        parts.append(want_of(moved)[:, COSINE])
+    return np.stack(parts, axis=1)
 
 
 def assert_rules(records: np.ndarray, got: np.ndarray) -> None:
@@ -278,21 +294,29 @@ def closer(got: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def beyond_box(want_of: Reference, records: np.ndarray, got: np.ndarray) -> np.ndarray:
-    """(n, 20) how far, relatively, a result lies outside what C gives within rounding of its record."""
-    low = high = want_of(records)
+    """(n, 20) how far, relatively, a result lies outside what C gives within rounding of its record, and the
+    mixture's density outside what C gives within rounding of the direction that was drawn."""
+    low, high = want_of(records), want_of(records)
     for moved in box(records):
         want = want_of(moved)
         low, high = np.minimum(low, want), np.maximum(high, want)
+    drawn, mixture = records.copy(), SAMPLES["mixture"]
+    drawn[:, [THETA_I, PHI_I]] = got[:, [mixture, mixture + 1]]
+    for moved in box(drawn):
+        want = want_of(moved)[:, DENSITIES["mixture"]]
+        low[:, mixture + 2] = np.minimum(low[:, mixture + 2], want)
+        high[:, mixture + 2] = np.maximum(high[:, mixture + 2], want)
     return relative(got, np.clip(got, low, high))
 
 
 def box(records: np.ndarray) -> Iterator[np.ndarray]:
-    """Records with directions moved by one float, and numbers by what the rounding of a column amounts to."""
+    """Records with directions moved by two floats at their domain's end, which is what an angle's arithmetic
+    rounds by, and numbers by what the rounding of a column amounts to."""
     for signs in itertools.product((-1, 0, 1), repeat=2):
         moved = records.copy()
         for sign, direction, number in zip(signs, (THETA_I, PHI_I), (U_THETA, U_PHI), strict=True):
             if sign:
-                moved[:, direction] = np.nextafter(records[:, direction], np.float32(sign * np.inf))
+                moved[:, direction] += np.float32(sign * 2 * np.spacing(END[direction]))
                 u = np.nan_to_num(records[:, number].astype(float), nan=-1, posinf=2, neginf=-1)
                 step = sign * 2.0**-20 * (np.minimum(u, 1 - u) + 1e-6)
                 inside = (u > 0) & (u < 1)

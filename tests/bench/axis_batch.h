@@ -14,7 +14,7 @@ static void axis_sample(const hairlut_axis *shared, size_t n, const float *theta
         for (size_t s = 0; s < m; s += LANES) {
             real q;
             store(x + b + s, clamp(draw(axis, &p, s, &q), all(axis->low), all(axis->high)));
-            store(pdf + b + s, q);
+            store(pdf + b + s, over(all(1.0f), q));
         }
     }
 }
@@ -26,10 +26,10 @@ static void axis_pdf(const hairlut_axis *axis, size_t n, const float *theta_r, c
         queries q;
         for (size_t s = 0; s < m; s += LANES)
             ask(axis, load(theta_r + b + s), load(x + b + s), &q, s);
-        block_of_cells found;
-        find_cells(axis, m, &q, &found);
+        float slope[BLOCK];
+        find_slopes(axis, m, &q, slope);
         for (size_t s = 0; s < m; s += LANES)
-            store(pdf + b + s, density(axis, &q, &found, s));
+            store(pdf + b + s, over(load(q.holds + s), load(slope + s)));
     }
 }
 

@@ -3,22 +3,26 @@
 
 #include "axis_bench.h"
 
-__attribute__((noinline)) static hairlut_draw draw(const hairlut_axis *axis, float theta_r, float u)
+typedef struct drawn {
+    float x, pdf;
+} drawn;
+
+__attribute__((noinline)) static drawn draw(const hairlut_axis *axis, float theta_r, float u)
 {
-    hairlut_draw drawn = hairlut_axis_sample(axis, theta_r, u);
-    drawn.x = hairlut_axis_inside(axis, drawn.x);
-    return drawn;
+    const hairlut_draw d = hairlut_axis_sample(axis, theta_r, u);
+    const drawn result = {hairlut_axis_inside(axis, d.x), 1.0f / d.slope};
+    return result;
 }
 
 __attribute__((noinline)) static float density(const hairlut_axis *axis, float theta_r, float x)
 {
-    return hairlut_axis_pdf(axis, theta_r, x);
+    return hairlut_axis_holds(axis, x) / hairlut_axis_slope(axis, hairlut_axis_look_up(axis, theta_r, x), x);
 }
 
 static void sample(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, float *x, float *pdf)
 {
     for (size_t i = 0; i < n; ++i) {
-        const hairlut_draw d = draw(axis, theta_r[i], u[i]);
+        const drawn d = draw(axis, theta_r[i], u[i]);
         x[i] = d.x;
         pdf[i] = d.pdf;
     }

@@ -102,9 +102,8 @@ const hairlut_axis &uniform(const hairlut_axis &axis)
 {
     auto *copy = new hairlut_axis(axis);
     copy->warp = HAIRLUT_WARP_UNIFORM;
-    copy->f0 = 0;
-    copy->k = copy->du = 1.0f / static_cast<float>(axis.columns - 1);
-    copy->inverse_k = static_cast<float>(axis.columns - 1);
+    copy->scale = static_cast<float>(axis.columns - 1);
+    copy->origin = 0;
     return *copy;
 }
 
@@ -204,6 +203,15 @@ void add_hybrid(const std::string &how, Hybrid rival, const std::string &name, r
     });
 }
 
+// Without AVX-512, a rival of that width is the 256-bit one by another name.
+bool has_avx512()
+{
+    for (int level = 1; const hairlut_batch *batch = hairlut_batch_level(level); ++level)
+        if (std::strcmp(batch->name, "avx512") == 0)
+            return true;
+    return false;
+}
+
 void add_rivals()
 {
     const std::pair<std::string, rival_table> lobes[] = {
@@ -213,10 +221,12 @@ void add_rivals()
     for (const auto &[name, table] : lobes) {
         add_analytic("analytic/scalar", rival_analytic_scalar, name, table);
         add_analytic("analytic/vector256", rival_analytic_vector256, name, table);
-        add_analytic("analytic/vector512", rival_analytic_vector512, name, table);
         add_hybrid("scalar", rival_hybrid_scalar, name, table);
         add_hybrid("vector256", rival_hybrid_vector256, name, table);
-        add_hybrid("vector512", rival_hybrid_vector512, name, table);
+        if (has_avx512()) {
+            add_analytic("analytic/vector512", rival_analytic_vector512, name, table);
+            add_hybrid("vector512", rival_hybrid_vector512, name, table);
+        }
 #ifdef HAVE_BOOST
         add_analytic("boost/scalar", rival_boost_scalar, name, table);
 #endif
@@ -224,13 +234,17 @@ void add_rivals()
         add_analytic("mkl/vector", rival_mkl_vector, name, table);
 #endif
     }
+#ifdef HAVE_MKL
+    float angle = 0.0f, u = 0.5f, x, pdf;
+    rival_mkl_vector(DIRECT_PHI, 1, &angle, &u, &x, &pdf); // its first call loads what fits the processor
+#endif
 }
 
 void add_warps(const std::string &how, const bench_warp *warps)
 {
     for (int i = 0; i < BENCH_WARPS; ++i)
         add("warp/" + how + "/" + warps[i].name, [map = warps[i].map](Arrays &all) {
-            map(count, all.u_theta.data(), all.a.data(), all.b.data());
+            map(count, all.u_theta.data(), all.a.data());
         });
 }
 

@@ -31,23 +31,13 @@ def run(*command, **options) -> None:
 
 def bake(directory: Path) -> None:
     """One model directory for each reading and size: printed-64x64 and so on."""
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
     for size in SIZES:
         for model in ("printed", "fitted"):
-            target = directory / f"{model}-{size}"
-            if not target.is_dir():
-                staging = directory.parent / f"bake-{size}"
-                run(
-                    tool("hairlut"),
-                    "bake",
-                    "--model",
-                    model,
-                    "--size",
-                    size,
-                    "--out",
-                    staging,
-                )
-                directory.mkdir(parents=True, exist_ok=True)
-                shutil.move(staging / model, target)
+            staging = directory.parent / f"bake-{size}"
+            run(tool("hairlut"), "bake", "--model", model, "--size", size, "--out", staging)
+            shutil.move(staging / model, directory / f"{model}-{size}")
 
 
 def build() -> Path:
@@ -62,12 +52,12 @@ def main() -> None:
     parser.add_argument(
         "--luts",
         type=Path,
-        help="directory of model directories; default: baked for the benchmark",
+        help="directory of model directories; default: baked for the benchmark, into build/bench/luts",
     )
     parser.add_argument("--filter", default=".", metavar="REGEX", help="which benchmarks to run")
     parser.add_argument("--build-only", action="store_true", help="build hairlut_bench, time nothing")
-    parser.add_argument("--repetitions", type=int, default=9)
-    parser.add_argument("--seconds", type=float, default=0.02, help="least time of each repeat")
+    parser.add_argument("--repetitions", type=int, default=24)
+    parser.add_argument("--seconds", type=float, default=0.015, help="least time of each repeat")
     parser.add_argument("--json", type=Path, default=BUILD / "results.json", metavar="FILE")
     args = parser.parse_args()
     program = build()

@@ -14,15 +14,15 @@ from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    "sample_direct": 242,
-    "sample_multiple": 157,
-    "pdf_direct": 439,
-    "pdf_multiple": 215,
-    "sample_direct_n": 36,
-    "sample_multiple_n": 21,
-    "pdf_direct_n": 122,
-    "pdf_multiple_n": 61,
-    "sample_mixture_n": 322,
+    "sample_direct": 218,
+    "sample_multiple": 148,
+    "pdf_direct": 346,
+    "pdf_multiple": 166,
+    "sample_direct_n": 34,
+    "sample_multiple_n": 20,
+    "pdf_direct_n": 106,
+    "pdf_multiple_n": 53,
+    "sample_mixture_n": 293,
 }
 
 

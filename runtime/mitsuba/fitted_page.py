@@ -145,6 +145,10 @@ Gaussian's tails end where this BSDF's do not, and a few enormous weights follow
 
 ![blond hair, data and fits](fit_blond.png)
 
+![black hair, data and fits](fit_black.png)
+
+![rough hair, data and fits](fit_rough.png)
+
 ## Cut or wrapped
 
 The built-in azimuth lobe is a Gaussian cut to one period; `precompute/examples/wrapped_azimuth.py` wraps it

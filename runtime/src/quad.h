@@ -1,5 +1,5 @@
-/* Four neighbouring floats at once, and a float's bits, where every processor of an architecture has the instructions: x86-64, AArch64. The
- * form in plain C gives the same numbers. */
+/* Four neighbouring floats at once, and a float's bits, where every processor of an architecture has the instructions:
+ * x86-64, AArch64. The form in plain C gives the same numbers. */
 #ifndef HAIRLUT_QUAD_H
 #define HAIRLUT_QUAD_H
 

@@ -141,7 +141,7 @@ def draw_warps(results: list[Result], path: Path) -> Path:
                 [each.errors.relative_variance for each in mine],
                 [names.index(each.candidate) for each in mine],
                 marker, color=colour, mfc=colour if cell == "parabola" else "white", ms=7,
-                label=f"{lobe}, {'curved' if cell == 'quadratic' else 'linear'} cells",
+                label=f"{lobe}, {'curved' if cell == 'parabola' else 'linear'} cells",
             )  # fmt: skip
     panel.set(
         xscale="log",

@@ -56,9 +56,8 @@ def curvatures(x: Array, h: Array, limit: float) -> Array:
     slope = (before + after) / (after * h[:-1] / before + before * h[1:] / after)  # dx/du at the inner knots
     c = np.empty_like(d)
     c[:, 1:-1] = h[1:-1] * (slope[:, :-1] - slope[:, 1:]) / 2
-    c[:, 0] = (
-        d[:, 0] - h[0] * d[:, 1] / h[1]
-    )  # the inner end of an end cell has the mean slope of the next cell
+    # the inner end of an end cell has the mean slope of the next cell
+    c[:, 0] = d[:, 0] - h[0] * d[:, 1] / h[1]
     c[:, -1] = h[-1] * d[:, -2] / h[-2] - d[:, -1]
     bound = limit * abs(d)  # rows that are counted from their high end fall
     return np.clip(c, -bound, bound)
@@ -146,19 +145,20 @@ def sample_tail(table: "Table", theta_r: Array, m: Array, upper: Array) -> tuple
     return read.angle_at(n, i, f), read.h[i] / read.slope_at(n, i, f)
 
 
-def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Array]:
-    """(cell i, fraction f, slope dx/df), each (n,), at which x (n,) lies; x is clamped to the row's ends."""
+def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Array, Array]:
+    """(cell i, its width h in u, fraction f, slope dx/df), each (n,), at which x (n,) lies; x is clamped to
+    the row's ends."""
     read = cells(table, theta_r)
     i = np.clip((read.x0 <= np.asarray(x)[:, None]).sum(axis=1) - 1, 0, table.width - 2)
-    return i, *read.fraction_at(np.arange(len(i)), i, x)
+    return i, read.h[i], *read.fraction_at(np.arange(len(i)), i, x)
 
 
 def pdf(table: "Table", theta_r: Array, x: Array) -> Array:
     """(n,) density, per rad, with which sample draws x (n,) at theta_r (n,); 0 outside the domain."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
-    i, _, slope = locate(table, theta_r, np.nan_to_num(x))
+    _, h, _, slope = locate(table, theta_r, np.nan_to_num(x))
     low, high = np.float32(table.domain)
-    return np.where((x >= low) & (x <= high), table.warp.widths(table.width)[i] / slope, 0.0)
+    return np.where((x >= low) & (x <= high), h / slope, 0.0)
 
 
 def invert(table: "Table", theta_r: Array, x: Array) -> Array:
@@ -170,11 +170,12 @@ def invert(table: "Table", theta_r: Array, x: Array) -> Array:
 def invert_tail(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array]:
     """(m, upper), each (n,): u = m, or u = 1 - m where upper."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
-    i, f, _ = locate(table, theta_r, x)
-    width = table.width
-    h, m = table.warp.widths(width)[i], table.warp.knots(width)[0]
+    i, h, f, _ = locate(table, theta_r, x)
+    m, _ = table.warp.knots(table.width)
     low, high = m[i] + f * h, m[i + 1] + (1 - f) * h
-    upper = 2 * i + 1 > width - 1  # the cell lies above u = 1/2; the middle one is counted from the low end
+    upper = (
+        2 * i + 1 > table.width - 1
+    )  # the cell lies above u = 1/2; the middle one is counted from the low end
     folded = np.where(upper, high, low)
     beyond = folded > 0.5
     return np.where(beyond, 1 - folded, folded), upper ^ beyond

@@ -27,9 +27,8 @@ typedef struct places {
     float m[BLOCK];
 } places;
 
-/* Where the directions of a block are looked up: the row; the cell as far as it is found, in the end counted from the nearer
- * end of the row; where to read on, first among the texels, then among the cells; the angle; and whether the domain holds it:
- * 1 or 0. */
+/* Where the directions of a block are looked up: the row; the cell as far as it is found, counted from the low end; where to
+ * read on, first among the texels, then among the cells; the angle; and whether the domain holds it: 1 or 0. */
 typedef struct queries {
     int j[BLOCK];
     int cell[BLOCK];
@@ -134,7 +133,6 @@ static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, que
 {
     const mask high = at_least(converted(found), all((float)(axis->columns / 2)));
     const whole i = ichoose(high, isub(iall(axis->columns - 2), found), found);
-    istore(q->cell + s, i);
     istore(q->at + s, cell_offset(axis, iload(q->j + s), i, high));
 }
 

@@ -5,6 +5,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "quad.h"
+
 static const float hairlut_two_pi = 6.28318548f;
 static const float hairlut_pi = 3.14159274f;
 static const float hairlut_inverse_two_pi = 0.159154943f;
@@ -59,7 +61,7 @@ static inline float hairlut_wrap_up(float phi, float low)
 static inline float hairlut_cos(float theta)
 {
     const float distance = (hairlut_half_pi_high - fabsf(theta)) + hairlut_half_pi_low;
-    const float z = distance > -hairlut_half_pi_low ? distance : -hairlut_half_pi_low;
+    const float least = hairlut_constant(-hairlut_half_pi_low), z = distance > least ? distance : least;
     const float w = z * z;
     const float low = hairlut_sine[0] + hairlut_sine[1] * w, high = hairlut_sine[2] + hairlut_sine[3] * w;
     return z + z * w * (low + w * w * high);

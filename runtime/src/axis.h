@@ -81,7 +81,7 @@ static inline float hairlut_axis_inside(const hairlut_axis *axis, float x)
 /* theta_r counted in rows, from 0 to the last. */
 static inline float hairlut_axis_position(const hairlut_axis *axis, float theta_r)
 {
-    return hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, 0.0f, axis->row_last);
+    return hairlut_clamp((theta_r - axis->row_origin) * axis->row_scale, hairlut_constant(0.0f), axis->row_last);
 }
 
 static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta_r)
@@ -96,7 +96,8 @@ static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta
  * every t, as p + t (q-p) does not where q is far below p. */
 HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad t, int i, int high)
 {
-    const float *p = axis->ends[high] + (i * axis->pitch + j * HAIRLUT_CELL), *q = p + HAIRLUT_CELL;
+    const unsigned at = (unsigned)i * (unsigned)axis->pitch; /* unsigned: no sign has to be extended for an address */
+    const float *p = axis->ends[high] + ((size_t)at + (size_t)((unsigned)j * HAIRLUT_CELL)), *q = p + HAIRLUT_CELL;
     const hairlut_quad below = hairlut_quad_mul(hairlut_quad_sub(hairlut_quad_all(1.0f), t), hairlut_quad_load(p));
     const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(q));
     float part[3];
@@ -109,7 +110,7 @@ HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, h
  * as good as random, and so would be the branch. */
 HAIRLUT_INLINE hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
 {
-    const float m = hairlut_max(hairlut_min(u, 1.0f - u), 0.0f);
+    const float m = hairlut_max(hairlut_min(u, 1.0f - u), hairlut_constant(0.0f));
     const float y = axis->warp == HAIRLUT_WARP_OCTAVES ? hairlut_shifted(m + axis->e) : m;
     const hairlut_knot knot = {(int)(y * axis->scale - axis->origin), u > 0.5f, m};
     return knot;
@@ -141,22 +142,55 @@ static inline int hairlut_halve(const float *a, int stride, float t, float x, in
     return first;
 }
 
-/* The cell whose blended texels enclose x, counted from the low end: the pivots find its block. */
-HAIRLUT_INLINE int hairlut_axis_find(const hairlut_axis *axis, hairlut_row row, float x)
+/* The row and the cell of an angle. */
+typedef struct hairlut_found {
+    hairlut_row row;
+    int cell; /* counted from the low end */
+} hairlut_found;
+
+/* A search as far as the pivots take it: the row, the angle, moved into the domain, and the first cell of its block. */
+typedef struct hairlut_query {
+    hairlut_row row;
+    float x;
+    int first;
+} hairlut_query;
+
+/* The first half of a search. x outside the domain is moved to its end, NaN to the low one: what is looked for is what a
+ * row holds, not infinity. */
+HAIRLUT_INLINE hairlut_query hairlut_axis_ask(const hairlut_axis *axis, float theta_r, float x)
 {
-    const int stride = axis->stride, step = axis->step, last = axis->columns - 2;
-    const float *texels = axis->rows + (ptrdiff_t)row.j * stride, *pivots = texels - HAIRLUT_PIVOTS;
-    int first, count; /* of a block; of its texels up to x, the first itself included */
+    const int stride = axis->stride;
+    hairlut_query query = {hairlut_axis_row(axis, theta_r), hairlut_axis_inside(axis, x), 0};
+    const float *pivots = axis->rows + (ptrdiff_t)query.row.j * stride - HAIRLUT_PIVOTS;
+    if (HAIRLUT_IS_SMALL(axis->columns))
+        query.first = axis->step * HAIRLUT_COUNT(pivots, stride, query.row.t, query.x, HAIRLUT_PIVOTS / 2);
+    else
+        query.first = axis->step * HAIRLUT_COUNT(pivots, stride, query.row.t, query.x, HAIRLUT_PIVOTS);
+    return query;
+}
+
+/* The rest of it: the cell whose blended texels enclose x. */
+HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_axis *axis, hairlut_query query)
+{
+    const hairlut_row row = query.row;
+    const int stride = axis->stride, last = axis->columns - 2;
+    const float *block = axis->rows + (ptrdiff_t)row.j * stride + query.first;
+    int count, halved = 0; /* the block's texels up to x, the first itself included */
     if (HAIRLUT_IS_SMALL(axis->columns)) {
-        first = step * HAIRLUT_COUNT(pivots, stride, row.t, x, HAIRLUT_PIVOTS / 2);
-        count = HAIRLUT_COUNT(texels + first, stride, row.t, x, HAIRLUT_PIVOTS / 2);
+        count = HAIRLUT_COUNT(block, stride, row.t, query.x, HAIRLUT_PIVOTS / 2);
     } else {
-        first = step * HAIRLUT_COUNT(pivots, stride, row.t, x, HAIRLUT_PIVOTS);
-        first += hairlut_halve(texels + first, stride, row.t, x, step);
-        count = HAIRLUT_COUNT(texels + first, stride, row.t, x, HAIRLUT_PIVOTS);
+        halved = hairlut_halve(block, stride, row.t, query.x, axis->step);
+        count = HAIRLUT_COUNT(block + halved, stride, row.t, query.x, HAIRLUT_PIVOTS);
     }
-    const int i = first + (count > 1 ? count - 1 : 0);
-    return i < last ? i : last; /* x is the domain's end */
+    const int i = query.first + halved + (count > 1 ? count - 1 : 0);
+    const hairlut_found found = {row, i < last ? i : last}; /* more than last: x is the domain's end */
+    return found;
+}
+
+/* Where there are several axes, ask of all before any is found: one waits for its loads while the other goes on. */
+HAIRLUT_INLINE hairlut_found hairlut_axis_look_up(const hairlut_axis *axis, float theta_r, float x)
+{
+    return hairlut_axis_find(axis, hairlut_axis_ask(axis, theta_r, x));
 }
 
 /* |dx/du| where a cell is at x. A curvature is at most 0.95 of a width, so that no slope is below 0.05 / 1.95 of another in the
@@ -167,26 +201,12 @@ static inline float hairlut_cell_slope(const hairlut_cell *cell, float x)
     return sqrtf(hairlut_max(square - 4.0f * cell->c * (x - cell->x0), hairlut_least_square * square));
 }
 
-/* The row and the cell of an angle. */
-typedef struct hairlut_found {
-    hairlut_row row;
-    int cell; /* counted from the low end */
-} hairlut_found;
-
 /* The cell that look_up found, as stored: from the nearer end of the row. *high gets whether that is the high end. */
 static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_found found, int *high)
 {
     *high = found.cell >= axis->columns / 2;
     const int i = abs((-*high & (axis->columns - 2)) - found.cell);
     return hairlut_axis_cell(axis, found.row.j, hairlut_quad_all(found.row.t), i, *high);
-}
-
-/* x outside the domain is moved to its end, NaN to the low one: the search is for what a row holds, not for infinity. */
-HAIRLUT_INLINE hairlut_found hairlut_axis_look_up(const hairlut_axis *axis, float theta_r, float x)
-{
-    const hairlut_row row = hairlut_axis_row(axis, theta_r);
-    const hairlut_found found = {row, hairlut_axis_find(axis, row, hairlut_axis_inside(axis, x))};
-    return found;
 }
 
 /* x may be beyond an end of the domain by the rounding of a blend, two steps of a float: hairlut_axis_inside moves it back,

@@ -106,7 +106,7 @@ static inline real draw(const hairlut_axis *axis, const places *p, size_t s, rea
     return add(cell.x0, mul(d, mean_slope));
 }
 
-/* hairlut_axis_find up to the pivots, n of them: the first cell of the block, and the offset of its first texel */
+/* hairlut_axis_ask, n pivots: the first cell of the block, and the offset of its first texel */
 static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int pivots)
 {
     for (size_t k = 0; k < n; ++k)
@@ -136,7 +136,7 @@ static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, que
     istore(q->at + s, cell_offset(axis, iload(q->j + s), i, high));
 }
 
-/* The rest of hairlut_axis_find, among as many texels, and where to read the cell. */
+/* hairlut_axis_find from the count on, among as many texels, and where to read the cell. */
 static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q, int texels)
 {
     int count[BLOCK];

@@ -15,6 +15,16 @@
 #include <arm_neon.h>
 #endif
 
+/* c, of which the compiler knows nothing more. Where gcc sees that c is a constant, it makes x > c ? x : c a comparison and a
+ * jump, three operations; of any other number, one: maxss. */
+static inline float hairlut_constant(float c)
+{
+#if defined(HAIRLUT_QUAD_SSE2) && defined(__GNUC__)
+    __asm__("" : "+x"(c));
+#endif
+    return c;
+}
+
 #if defined(HAIRLUT_QUAD_SSE2)
 typedef __m128 hairlut_quad;
 
@@ -42,10 +52,11 @@ static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
 
 static inline float hairlut_quad_last(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 3)); }
 
-/* The float whose bits are those of s > 0 shifted right by two. */
+/* The float whose bits are those of s > 0 shifted right by two. In all lanes: to clear the others, gcc would send s through
+ * an integer register. */
 static inline float hairlut_shifted(float s)
 {
-    return _mm_cvtss_f32(_mm_castsi128_ps(_mm_srli_epi32(_mm_castps_si128(_mm_set_ss(s)), 2)));
+    return _mm_cvtss_f32(_mm_castsi128_ps(_mm_srli_epi32(_mm_castps_si128(_mm_set1_ps(s)), 2)));
 }
 
 typedef __m128i hairlut_tally; /* four counters */

@@ -14,10 +14,10 @@ from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    "sample_direct": 218,
-    "sample_multiple": 148,
-    "pdf_direct": 346,
-    "pdf_multiple": 166,
+    "sample_direct": 202,
+    "sample_multiple": 134,
+    "pdf_direct": 359,
+    "pdf_multiple": 162,
     "sample_direct_n": 34,
     "sample_multiple_n": 20,
     "pdf_direct_n": 106,

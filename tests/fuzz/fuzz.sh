@@ -8,7 +8,7 @@ out=build/fuzz
 command -v clang >/dev/null || { echo "hairlut: fuzzing needs clang: apt-get install clang libclang-rt-14-dev"; exit 2; }
 mkdir -p "$out"
 src=runtime/src
-core="$src/model.c $src/sample.c $src/mixture.c $src/builtin.c $src/builtin_tables.c"
+core="$src/model.c $src/sample.c $src/density.c $src/mixture.c $src/builtin.c $src/builtin_tables.c"
 flags="-std=c99 -g -O1 -fno-math-errno -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all"
 include="-Iruntime/include -Iruntime/src -Itests/fuzz"
 clang $flags $include tests/fuzz/fuzz_memory.c $core -lm -o "$out/fuzz_memory"

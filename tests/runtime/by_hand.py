@@ -9,6 +9,7 @@ from runtime.c_library import BUILD, RUNTIME, run
 SOURCE = RUNTIME / "src"
 CORE = (
     "sample",
+    "density",
     "mixture",
     "frame",
     "model",

@@ -140,6 +140,7 @@ def test_lines_of_the_runtime_are_covered(directories):
         "axis.h",
         "model.c",
         "sample.c",
+        "density.c",
         "mixture.c",
         "components.c",
         "frame.c",
@@ -151,7 +152,7 @@ def test_lines_of_the_runtime_are_covered(directories):
 def replayed(tmp_path, target: str, *sources: str, libraries: tuple[str, ...] = ()) -> str:
     """The corpus through a fuzz target, under the sanitizers."""
     out = tmp_path / target
-    core = ("model.c", "sample.c", "mixture.c", "builtin.c", "builtin_tables.c")
+    core = ("model.c", "sample.c", "density.c", "mixture.c", "builtin.c", "builtin_tables.c")
     run("gcc", "-std=gnu99", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", *INCLUDE,
         FUZZ / f"{target}.c", FUZZ / "replay.c", *(RUNTIME / "src" / name for name in (*core, *sources)),
         *libraries, "-lm", "-o", out)  # fmt: skip

@@ -12,7 +12,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 
 #include "internal.h"
 #include "quad.h"
@@ -163,7 +162,7 @@ HAIRLUT_INLINE hairlut_query hairlut_axis_ask(const hairlut_axis *axis, float th
     hairlut_query query = {hairlut_axis_row(axis, theta_r), hairlut_axis_inside(axis, x), 0};
     const float *pivots = axis->rows + (ptrdiff_t)query.row.j * stride - HAIRLUT_PIVOTS;
     if (HAIRLUT_IS_SMALL(axis->columns))
-        query.first = axis->step * HAIRLUT_COUNT(pivots, stride, query.row.t, query.x, HAIRLUT_PIVOTS / 2);
+        query.first = HAIRLUT_PIVOTS / 2 * HAIRLUT_COUNT(pivots, stride, query.row.t, query.x, HAIRLUT_PIVOTS / 2);
     else
         query.first = axis->step * HAIRLUT_COUNT(pivots, stride, query.row.t, query.x, HAIRLUT_PIVOTS);
     return query;
@@ -204,8 +203,8 @@ static inline float hairlut_cell_slope(const hairlut_cell *cell, float x)
 /* The cell that look_up found, as stored: from the nearer end of the row. *high gets whether that is the high end. */
 static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_found found, int *high)
 {
-    *high = found.cell >= axis->columns / 2;
-    const int i = abs((-*high & (axis->columns - 2)) - found.cell);
+    const int mirrored = axis->columns - 2 - found.cell, i = found.cell < mirrored ? found.cell : mirrored;
+    *high = i != found.cell;
     return hairlut_axis_cell(axis, found.row.j, hairlut_quad_all(found.row.t), i, *high);
 }
 

@@ -2,7 +2,7 @@
 #include "lobes.h"
 
 /* theta_i as it was drawn: its cosine does not wait until it is moved into the domain. */
-static hairlut_sample finish(const hairlut_axis *axis, float theta_i, float phi_i, float pdf)
+HAIRLUT_INLINE hairlut_sample finish(const hairlut_axis *axis, float theta_i, float phi_i, float pdf)
 {
     hairlut_sample s = hairlut_finish(theta_i, phi_i, pdf);
     s.theta_i = hairlut_axis_inside(axis, theta_i);

@@ -16,8 +16,8 @@ TOLERANCE = 0.15
 PINNED = {
     "sample_direct": 202,
     "sample_multiple": 134,
-    "pdf_direct": 359,
-    "pdf_multiple": 162,
+    "pdf_direct": 333,
+    "pdf_multiple": 149,
     "sample_direct_n": 34,
     "sample_multiple_n": 20,
     "pdf_direct_n": 106,

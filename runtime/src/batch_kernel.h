@@ -5,14 +5,16 @@
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
  *   every(m)        whether all lanes are true
+ *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
  *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
- * results equal bit for bit. The work on a block is done in passes, because a single one would wait for where to load
- * from, then for the loads (tests/bench/NOTES.md). In a pass, all inputs of a vector are read before its outputs are written,
- * which is what allows outputs in place of inputs. */
+ * results equal bit for bit. The work on a block is done in passes, each short enough that a processor has several vectors
+ * of it under way: a single pass would wait for where to load from, then for the loads, then for quotients
+ * (tests/bench/NOTES.md). In a pass, all inputs of a vector are read before its outputs are written, and inputs that the
+ * last pass reads are those of the vectors it writes, which is what allows outputs in place of inputs. */
 #ifndef HAIRLUT_BATCH_KERNEL_H
 #define HAIRLUT_BATCH_KERNEL_H
 
@@ -20,12 +22,22 @@
 
 enum { BLOCK = 128 }; /* samples a pass */
 
-/* Where the samples of a block read an axis: the offset of the cell; the weight of the row above; m of hairlut_knot. */
-typedef struct places {
-    int at[BLOCK];
-    float t[BLOCK];
-    float m[BLOCK];
-} places;
+/* Before a loop over single samples: less of it is counting. clang does so by itself. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define HAIRLUT_UNROLLED _Pragma("GCC unroll 4")
+#else
+#define HAIRLUT_UNROLLED
+#endif
+
+/* The samples of a block on an axis. What a pass no longer needs makes room for what it finds: all of it is to stay in the
+ * first-level cache, beside the table. */
+typedef struct draws {
+    int at[BLOCK];   /* the offset of the cell */
+    float t[BLOCK];  /* the weight of the row above; from fetch on: the blended cell's c */
+    float m[BLOCK];  /* of hairlut_knot; from fetch on: the distance d from the cell's knot */
+    float x0[BLOCK]; /* of the blended cell; from store_samples on: the angle as it was drawn */
+    float a[BLOCK];  /* of the blended cell; from store_samples on: the density */
+} draws;
 
 /* Where the directions of a block are looked up: the row; the cell as far as it is found, counted from the low end; where to
  * read on, first among the texels, then among the cells; the angle; and whether the domain holds it: 1 or 0. */
@@ -61,7 +73,7 @@ static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
 static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
 {
     const whole cell = imul(i, iall(axis->pitch));
-    const whole half = ichoose(high, iall((int)(axis->ends[1] - axis->ends[0])), iall(0));
+    const whole half = iwhere(high, iall((int)(axis->ends[1] - axis->ends[0])));
     return iadd(iadd(cell, half), imul(j, iall(HAIRLUT_CELL)));
 }
 
@@ -73,15 +85,15 @@ static inline whole find_knot(const hairlut_axis *axis, real u, real *m)
     return truncated(sub(mul(y, all(axis->scale)), all(axis->origin)));
 }
 
-static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, places *p)
+static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, draws *q)
 {
     for (size_t s = 0; s < n; s += LANES) {
         real t, m;
         const real number = load(u + s);
         const whole j = find_row(axis, load(theta_r + s), &t), i = find_knot(axis, number, &m);
-        istore(p->at + s, cell_offset(axis, j, i, greater(number, all(0.5f))));
-        store(p->t + s, t);
-        store(p->m + s, m);
+        istore(q->at + s, cell_offset(axis, j, i, greater(number, all(0.5f))));
+        store(q->t + s, t);
+        store(q->m + s, m);
     }
 }
 
@@ -96,19 +108,30 @@ static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
     return cell;
 }
 
-/* hairlut_axis_sample, not moved into the domain, at the places of samples s .. s+LANES-1 */
-static inline real draw(const hairlut_axis *axis, const places *p, size_t s, real *slope)
+static inline void fetch(const hairlut_axis *axis, size_t n, draws *q)
 {
-    const cells cell = load_cells(axis, p->at + s, load(p->t + s));
-    const real d = sub(load(p->m + s), cell.u0);
-    const real bend = mul(cell.c, d), mean_slope = sub(cell.a, bend);
+    for (size_t s = 0; s < n; s += LANES) {
+        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
+        store(q->t + s, cell.c);
+        store(q->m + s, sub(load(q->m + s), cell.u0));
+        store(q->x0 + s, cell.x0);
+        store(q->a + s, cell.a);
+    }
+}
+
+/* hairlut_axis_sample, not moved into the domain, of samples s .. s+LANES-1 that were placed and fetched */
+static inline real draw(const draws *q, size_t s, real *slope)
+{
+    const real d = load(q->m + s);
+    const real bend = mul(load(q->t + s), d), mean_slope = sub(load(q->a + s), bend);
     *slope = magnitude(sub(mean_slope, bend));
-    return add(cell.x0, mul(d, mean_slope));
+    return add(load(q->x0 + s), mul(d, mean_slope));
 }
 
 /* hairlut_axis_ask, n pivots: the first cell of the block, and the offset of its first texel */
 static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int pivots)
 {
+    HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
         q->cell[k] = HAIRLUT_COUNT(axis->rows + q->at[k] - HAIRLUT_PIVOTS, axis->stride, q->t[k], q->x[k], pivots);
     for (size_t s = 0; s < n; s += LANES) {
@@ -140,6 +163,7 @@ static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, que
 static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q, int texels)
 {
     int count[BLOCK];
+    HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
         count[k] = HAIRLUT_COUNT(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], texels);
     for (size_t s = 0; s < n; s += LANES) {
@@ -230,44 +254,55 @@ static inline real cosine(real theta)
 /* hairlut_known */
 static inline mask known(real theta_r, real phi_r, real a, real b)
 {
-    return both(both(numbers(theta_r, a), numbers(b, b)), at_least(all(FLT_MAX), magnitude(phi_r)));
+    return both(numbers(theta_r, a), numbers(b, sub(phi_r, phi_r)));
 }
 
-static inline void store_samples(const hairlut_axis *axis, hairlut_samples out, size_t s, real theta_i, real phi_i, real pdf)
+static inline void store_samples(const hairlut_axis *axis, hairlut_samples out, size_t s, real theta_i, real phi_i, real pdf,
+                                 draws *q)
 {
+    store(q->x0 + s, theta_i);
+    store(q->a + s, pdf);
     store(out.theta_i + s, clamp(theta_i, all(axis->low), all(axis->high)));
     store(out.phi_i + s, phi_i);
     if (out.pdf_angle)
         store(out.pdf_angle + s, pdf);
-    if (out.pdf_solid_angle)
-        store(out.pdf_solid_angle + s, over(pdf, cosine(theta_i)));
+}
+
+/* hairlut_per_steradian, after store_samples */
+static inline void store_solid_angles(size_t n, const draws *q, float *pdf_solid_angle)
+{
+    for (size_t s = 0; pdf_solid_angle && s < n; s += LANES)
+        store(pdf_solid_angle + s, over(load(q->a + s), cosine(load(q->x0 + s))));
 }
 
 static inline void sample_direct_block(const hairlut_model *shared, size_t n, const float *const in[4], hairlut_samples out)
 {
     const hairlut_model copy = *shared, *model = &copy; /* no output can change it: what a loop uses stays in registers */
-    places theta, phi;
+    draws theta, phi;
     place(&model->direct_theta, n, in[0], in[2], &theta);
     place(&model->direct_phi, n, in[0], in[3], &phi);
+    fetch(&model->direct_theta, n, &theta);
+    fetch(&model->direct_phi, n, &phi);
     for (size_t s = 0; s < n; s += LANES) {
         const real phi_r = load(in[1] + s);
         const mask valid = known(load(in[0] + s), phi_r, load(in[2] + s), load(in[3] + s));
         real slope_theta, slope_phi;
-        const real theta_i = draw(&model->direct_theta, &theta, s, &slope_theta);
-        const real relative = draw(&model->direct_phi, &phi, s, &slope_phi);
+        const real theta_i = draw(&theta, s, &slope_theta), relative = draw(&phi, s, &slope_phi);
         const real r = wrap(phi_r, -hairlut_pi);
         const real phi_i = model->azimuth == HAIRLUT_AZIMUTH_SUM ? sub(relative, r) : add(relative, r);
         store_samples(&model->direct_theta, out, s, theta_i, wrap_down(phi_i, -hairlut_pi),
-                      choose(valid, over(all(1.0f), mul(slope_theta, slope_phi)), all(0.0f)));
+                      choose(valid, over(all(1.0f), mul(slope_theta, slope_phi)), all(0.0f)), &theta);
     }
+    store_solid_angles(n, &theta, out.pdf_solid_angle);
 }
 
 static inline void sample_multiple_block(const hairlut_model *shared, size_t n, const float *const in[4],
                                          hairlut_samples out)
 {
     const hairlut_model copy = *shared, *model = &copy;
-    places theta;
+    draws theta;
     place(&model->multiple_theta, n, in[0], in[2], &theta);
+    fetch(&model->multiple_theta, n, &theta);
     for (size_t s = 0; s < n; s += LANES) {
         const real u_phi = load(in[3] + s);
         const mask valid = known(load(in[0] + s), load(in[1] + s), load(in[2] + s), u_phi);
@@ -275,10 +310,11 @@ static inline void sample_multiple_block(const hairlut_model *shared, size_t n, 
         const real phi = sub(turn, all(hairlut_pi));
         const real phi_i = choose(greater(all(hairlut_pi), phi), phi, all(-hairlut_pi));
         real slope;
-        const real theta_i = draw(&model->multiple_theta, &theta, s, &slope);
+        const real theta_i = draw(&theta, s, &slope);
         store_samples(&model->multiple_theta, out, s, theta_i, phi_i,
-                      choose(valid, over(all(hairlut_inverse_two_pi), slope), all(0.0f)));
+                      choose(valid, over(all(hairlut_inverse_two_pi), slope), all(0.0f)), &theta);
     }
+    store_solid_angles(n, &theta, out.pdf_solid_angle);
 }
 
 /* hairlut_relative_azimuth */

@@ -17,6 +17,8 @@ static inline whole ichoose(mask m, whole a, whole b)
     return _mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps(b), _mm256_castsi256_ps(a), m));
 }
 
+static inline whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
+
 #define HAIRLUT_COUNT count_at_most
 static inline unsigned below(const float *a, int stride, float t, float x)
 {

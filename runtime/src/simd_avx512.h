@@ -15,6 +15,8 @@ static inline int every(mask m) { return m == 0xff; }
 static inline real choose(mask m, real a, real b) { return _mm256_mask_blend_ps(m, b, a); }
 static inline whole ichoose(mask m, whole a, whole b) { return _mm256_mask_blend_epi32(m, b, a); }
 
+static inline whole iwhere(mask m, whole a) { return _mm256_maskz_mov_epi32(m, a); }
+
 #define HAIRLUT_COUNT count_at_most
 static inline unsigned below8(const float *a, int stride, float t, float x)
 {

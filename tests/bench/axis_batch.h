@@ -9,12 +9,13 @@ static void axis_sample(const hairlut_axis *shared, size_t n, const float *theta
     const hairlut_axis copy = *shared, *axis = &copy;
     for (size_t b = 0; b < n; b += BLOCK) {
         const size_t m = n - b < BLOCK ? n - b : BLOCK;
-        places p;
-        place(axis, m, theta_r + b, u + b, &p);
+        draws q;
+        place(axis, m, theta_r + b, u + b, &q);
+        fetch(axis, m, &q);
         for (size_t s = 0; s < m; s += LANES) {
-            real q;
-            store(x + b + s, clamp(draw(axis, &p, s, &q), all(axis->low), all(axis->high)));
-            store(pdf + b + s, over(all(1.0f), q));
+            real slope;
+            store(x + b + s, clamp(draw(&q, s, &slope), all(axis->low), all(axis->high)));
+            store(pdf + b + s, over(all(1.0f), slope));
         }
     }
 }

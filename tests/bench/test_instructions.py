@@ -18,11 +18,11 @@ PINNED = {
     "sample_multiple": 134,
     "pdf_direct": 333,
     "pdf_multiple": 149,
-    "sample_direct_n": 34,
-    "sample_multiple_n": 20,
-    "pdf_direct_n": 106,
-    "pdf_multiple_n": 53,
-    "sample_mixture_n": 293,
+    "sample_direct_n": 35,
+    "sample_multiple_n": 21,
+    "pdf_direct_n": 98,
+    "pdf_multiple_n": 49,
+    "sample_mixture_n": 281,
 }
 
 

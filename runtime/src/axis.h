@@ -120,14 +120,15 @@ static inline float hairlut_blend(float a, float b, float t)
     return a + t * (b - a);
 }
 
-/* How many of the n blended texels a[0], a[1], ... are at most x; n is 8 or 16. A count has no branch that depends on x. */
-static inline int hairlut_count(const float *a, int stride, float t, float x, int n)
+/* How many of n texels, blended from those of the row below (low) and above (high), are at most x; n is 8 or 16. A count has
+ * no branch that depends on x. */
+static inline int hairlut_count(const float *low, const float *high, float t, float x, int n)
 {
     hairlut_tally tally = hairlut_tally_zero();
     for (int k = 0; k < n; k += 4) {
-        const hairlut_quad low = hairlut_quad_load(a + k), high = hairlut_quad_load(a + stride + k);
-        const hairlut_quad change = hairlut_quad_mul(hairlut_quad_all(t), hairlut_quad_sub(high, low));
-        tally = hairlut_tally_at_most(tally, hairlut_quad_add(low, change), x);
+        const hairlut_quad from = hairlut_quad_load(low + k), to = hairlut_quad_load(high + k);
+        const hairlut_quad change = hairlut_quad_mul(hairlut_quad_all(t), hairlut_quad_sub(to, from));
+        tally = hairlut_tally_at_most(tally, hairlut_quad_add(from, change), x);
     }
     return hairlut_tally_sum(tally);
 }
@@ -162,9 +163,9 @@ HAIRLUT_INLINE hairlut_query hairlut_axis_ask(const hairlut_axis *axis, float th
     hairlut_query query = {hairlut_axis_row(axis, theta_r), hairlut_axis_inside(axis, x), 0};
     const float *pivots = axis->rows + (ptrdiff_t)query.row.j * stride - HAIRLUT_PIVOTS;
     if (HAIRLUT_IS_SMALL(axis->columns))
-        query.first = HAIRLUT_PIVOTS / 2 * HAIRLUT_COUNT(pivots, stride, query.row.t, query.x, HAIRLUT_PIVOTS / 2);
+        query.first = HAIRLUT_PIVOTS / 2 * HAIRLUT_COUNT(pivots, pivots + stride, query.row.t, query.x, HAIRLUT_PIVOTS / 2);
     else
-        query.first = axis->step * HAIRLUT_COUNT(pivots, stride, query.row.t, query.x, HAIRLUT_PIVOTS);
+        query.first = axis->step * HAIRLUT_COUNT(pivots, pivots + stride, query.row.t, query.x, HAIRLUT_PIVOTS);
     return query;
 }
 
@@ -176,10 +177,11 @@ HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_axis *axis, hairlut
     const float *block = axis->rows + (ptrdiff_t)row.j * stride + query.first;
     int count, halved = 0; /* the block's texels up to x, the first itself included */
     if (HAIRLUT_IS_SMALL(axis->columns)) {
-        count = HAIRLUT_COUNT(block, stride, row.t, query.x, HAIRLUT_PIVOTS / 2);
+        count = HAIRLUT_COUNT(block, block + stride, row.t, query.x, HAIRLUT_PIVOTS / 2);
     } else {
         halved = hairlut_halve(block, stride, row.t, query.x, axis->step);
-        count = HAIRLUT_COUNT(block + halved, stride, row.t, query.x, HAIRLUT_PIVOTS);
+        block += halved;
+        count = HAIRLUT_COUNT(block, block + stride, row.t, query.x, HAIRLUT_PIVOTS);
     }
     const int i = query.first + halved + (count > 1 ? count - 1 : 0);
     const hairlut_found found = {row, i < last ? i : last}; /* more than last: x is the domain's end */

@@ -8,7 +8,7 @@
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
- *   HAIRLUT_COUNT(a, stride, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
+ *   HAIRLUT_COUNT(low, high, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, each short enough that a processor has several vectors
@@ -39,15 +39,15 @@ typedef struct draws {
     float a[BLOCK];  /* of the blended cell; from store_samples on: the density */
 } draws;
 
-/* Where the directions of a block are looked up: the row; the cell as far as it is found, counted from the low end; where to
- * read on, first among the texels, then among the cells; the angle; and whether the domain holds it: 1 or 0. */
+/* The directions of a block on an axis; here, too, what is found takes the place of what is no longer needed. */
 typedef struct queries {
-    int j[BLOCK];
-    int cell[BLOCK];
-    int at[BLOCK];
-    float t[BLOCK];
-    float x[BLOCK];
-    float holds[BLOCK];
+    int j[BLOCK];       /* the row */
+    int cell[BLOCK];    /* as far as it is found, counted from the low end */
+    int at[BLOCK];      /* where to read on: an offset among the texels, then among the cells */
+    float t[BLOCK];     /* the weight of the row above; from find_cells on: the blended cell's c */
+    float x[BLOCK];     /* the angle; from find_cells on: less the blended cell's x0 */
+    float a[BLOCK];     /* of the blended cell */
+    float holds[BLOCK]; /* whether the domain holds the angle: 1 or 0 */
 } queries;
 
 typedef struct cells {
@@ -131,11 +131,13 @@ static inline real draw(const draws *q, size_t s, real *slope)
 /* hairlut_axis_ask, n pivots: the first cell of the block, and the offset of its first texel */
 static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int pivots)
 {
+    const float *low = axis->rows - HAIRLUT_PIVOTS, *high = low + axis->stride;
+    const int step = axis->step;
     HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
-        q->cell[k] = HAIRLUT_COUNT(axis->rows + q->at[k] - HAIRLUT_PIVOTS, axis->stride, q->t[k], q->x[k], pivots);
+        q->cell[k] = HAIRLUT_COUNT(low + q->at[k], high + q->at[k], q->t[k], q->x[k], pivots);
     for (size_t s = 0; s < n; s += LANES) {
-        const whole first = imul(iload(q->cell + s), iall(axis->step));
+        const whole first = imul(iload(q->cell + s), iall(step));
         istore(q->cell + s, first);
         istore(q->at + s, iadd(iload(q->at + s), first));
     }
@@ -162,18 +164,19 @@ static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, que
 /* hairlut_axis_find from the count on, among as many texels, and where to read the cell. */
 static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q, int texels)
 {
+    const float *low = axis->rows, *high = low + axis->stride;
     int count[BLOCK];
     HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
-        count[k] = HAIRLUT_COUNT(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], texels);
+        count[k] = HAIRLUT_COUNT(low + q->at[k], high + q->at[k], q->t[k], q->x[k], texels);
     for (size_t s = 0; s < n; s += LANES) {
         const whole more = ilarger(isub(iload(count + s), iall(1)), iall(0));
         turn_to_nearer_end(axis, ismaller(iadd(iload(q->cell + s), more), iall(axis->columns - 2)), q, s);
     }
 }
 
-/* hairlut_axis_look_up and hairlut_axis_slope */
-static inline void find_slopes(const hairlut_axis *axis, size_t n, queries *q, float *slope)
+/* hairlut_axis_look_up and hairlut_axis_found */
+static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q)
 {
     if (HAIRLUT_IS_SMALL(axis->columns)) {
         find_blocks(axis, n, q, HAIRLUT_PIVOTS / 2);
@@ -185,10 +188,18 @@ static inline void find_slopes(const hairlut_axis *axis, size_t n, queries *q, f
     }
     for (size_t s = 0; s < n; s += LANES) {
         const cells cell = load_cells(axis, q->at + s, load(q->t + s));
-        const real square = mul(cell.a, cell.a);
-        const real here = sub(square, mul(mul(all(4.0f), cell.c), sub(load(q->x + s), cell.x0)));
-        store(slope + s, root(larger(here, mul(all(hairlut_least_square), square))));
+        store(q->t + s, cell.c);
+        store(q->x + s, sub(load(q->x + s), cell.x0));
+        store(q->a + s, cell.a);
     }
+}
+
+/* hairlut_cell_slope, of angles s .. s+LANES-1 whose cells are found */
+static inline real slope_at(const queries *q, size_t s)
+{
+    const real a = load(q->a + s), square = mul(a, a);
+    const real here = sub(square, mul(mul(all(4.0f), load(q->t + s)), load(q->x + s)));
+    return root(larger(here, mul(all(hairlut_least_square), square)));
 }
 
 /* Asks for x, moved into the domain: the search is for what a row holds, not for infinity. */
@@ -335,17 +346,16 @@ static inline real where_known(const float *const in[4], size_t s, real pdf)
 static inline void pdf_direct_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta, phi;
-    float theta_slope[BLOCK], phi_slope[BLOCK];
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in[0] + s);
         ask(&model->direct_theta, theta_r, load(in[2] + s), &theta, s);
         ask(&model->direct_phi, theta_r, relative_azimuth(model, load(in[1] + s), load(in[3] + s)), &phi, s);
     }
-    find_slopes(&model->direct_theta, n, &theta, theta_slope);
-    find_slopes(&model->direct_phi, n, &phi, phi_slope);
+    find_cells(&model->direct_theta, n, &theta);
+    find_cells(&model->direct_phi, n, &phi);
     for (size_t s = 0; s < n; s += LANES) {
         const real holds = mul(load(theta.holds + s), load(phi.holds + s));
-        const real slope = mul(load(theta_slope + s), load(phi_slope + s));
+        const real slope = mul(slope_at(&theta, s), slope_at(&phi, s));
         store(out + s, where_known(in, s, over(holds, slope)));
     }
 }
@@ -353,13 +363,12 @@ static inline void pdf_direct_block(const hairlut_model *model, size_t n, const 
 static inline void pdf_multiple_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta;
-    float slope[BLOCK];
     for (size_t s = 0; s < n; s += LANES)
         ask(&model->multiple_theta, load(in[0] + s), load(in[2] + s), &theta, s);
-    find_slopes(&model->multiple_theta, n, &theta, slope);
+    find_cells(&model->multiple_theta, n, &theta);
     for (size_t s = 0; s < n; s += LANES) {
         const real holds = mul(load(theta.holds + s), all(hairlut_inverse_two_pi));
-        store(out + s, where_known(in, s, over(holds, load(slope + s))));
+        store(out + s, where_known(in, s, over(holds, slope_at(&theta, s))));
     }
 }
 

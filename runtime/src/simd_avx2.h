@@ -20,16 +20,15 @@ static inline whole ichoose(mask m, whole a, whole b)
 static inline whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
 
 #define HAIRLUT_COUNT count_at_most
-static inline unsigned below(const float *a, int stride, float t, float x)
+static inline unsigned below(const float *low, const float *high, float t, float x)
 {
-    const real low = load(a), high = load(a + stride);
-    const real blend = add(low, mul(all(t), sub(high, low)));
+    const real from = load(low), blend = add(from, mul(all(t), sub(load(high), from)));
     return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(blend, all(x), _CMP_LE_OQ));
 }
 
-static inline int count_at_most(const float *a, int stride, float t, float x, int n)
+static inline int count_at_most(const float *low, const float *high, float t, float x, int n)
 {
-    return _mm_popcnt_u32(below(a, stride, t, x)) + (n > 8 ? _mm_popcnt_u32(below(a + 8, stride, t, x)) : 0);
+    return _mm_popcnt_u32(below(low, high, t, x)) + (n > 8 ? _mm_popcnt_u32(below(low + 8, high + 8, t, x)) : 0);
 }
 
 #endif

@@ -18,22 +18,22 @@ static inline whole ichoose(mask m, whole a, whole b) { return _mm256_mask_blend
 static inline whole iwhere(mask m, whole a) { return _mm256_maskz_mov_epi32(m, a); }
 
 #define HAIRLUT_COUNT count_at_most
-static inline unsigned below8(const float *a, int stride, float t, float x)
+static inline unsigned below8(const float *low, const float *high, float t, float x)
 {
-    const real low = load(a), blend = add(low, mul(all(t), sub(load(a + stride), low)));
+    const real from = load(low), blend = add(from, mul(all(t), sub(load(high), from)));
     return _mm256_cmp_ps_mask(blend, all(x), _CMP_LE_OQ);
 }
 
-static inline unsigned below16(const float *a, int stride, float t, float x)
+static inline unsigned below16(const float *low, const float *high, float t, float x)
 {
-    const __m512 low = _mm512_loadu_ps(a), high = _mm512_loadu_ps(a + stride);
-    const __m512 blend = _mm512_add_ps(low, _mm512_mul_ps(_mm512_set1_ps(t), _mm512_sub_ps(high, low)));
+    const __m512 from = _mm512_loadu_ps(low), change = _mm512_sub_ps(_mm512_loadu_ps(high), from);
+    const __m512 blend = _mm512_add_ps(from, _mm512_mul_ps(_mm512_set1_ps(t), change));
     return _mm512_cmp_ps_mask(blend, _mm512_set1_ps(x), _CMP_LE_OQ);
 }
 
-static inline int count_at_most(const float *a, int stride, float t, float x, int n)
+static inline int count_at_most(const float *low, const float *high, float t, float x, int n)
 {
-    return _mm_popcnt_u32(n > 8 ? below16(a, stride, t, x) : below8(a, stride, t, x));
+    return _mm_popcnt_u32(n > 8 ? below16(low, high, t, x) : below8(low, high, t, x));
 }
 
 #endif

@@ -27,10 +27,9 @@ static void axis_pdf(const hairlut_axis *axis, size_t n, const float *theta_r, c
         queries q;
         for (size_t s = 0; s < m; s += LANES)
             ask(axis, load(theta_r + b + s), load(x + b + s), &q, s);
-        float slope[BLOCK];
-        find_slopes(axis, m, &q, slope);
+        find_cells(axis, m, &q);
         for (size_t s = 0; s < m; s += LANES)
-            store(pdf + b + s, over(load(q.holds + s), load(slope + s)));
+            store(pdf + b + s, over(load(q.holds + s), slope_at(&q, s)));
     }
 }
 

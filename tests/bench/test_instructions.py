@@ -17,7 +17,7 @@ PINNED = {
     "sample_direct": 202,
     "sample_multiple": 134,
     "pdf_direct": 333,
-    "pdf_multiple": 149,
+    "pdf_multiple": 151,
     "sample_direct_n": 35,
     "sample_multiple_n": 21,
     "pdf_direct_n": 98,

@@ -9,6 +9,7 @@
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
  *   HAIRLUT_COUNT(low, high, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
+ *   HAIRLUT_COUNTS(low, high, at, t, x, n)  may be defined: lane l has the count from low + at[l] and high + at[l], t[l], x[l]
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, each short enough that a processor has several vectors
@@ -41,13 +42,12 @@ typedef struct draws {
 
 /* The directions of a block on an axis; here, too, what is found takes the place of what is no longer needed. */
 typedef struct queries {
-    int j[BLOCK];       /* the row */
-    int cell[BLOCK];    /* as far as it is found, counted from the low end */
-    int at[BLOCK];      /* where to read on: an offset among the texels, then among the cells */
-    float t[BLOCK];     /* the weight of the row above; from find_cells on: the blended cell's c */
-    float x[BLOCK];     /* the angle; from find_cells on: less the blended cell's x0 */
-    float a[BLOCK];     /* of the blended cell */
-    float holds[BLOCK]; /* whether the domain holds the angle: 1 or 0 */
+    int j[BLOCK];    /* the row */
+    int cell[BLOCK]; /* as far as it is found, counted from the low end */
+    int at[BLOCK];   /* where to read on: an offset among the texels, then among the cells */
+    float t[BLOCK];  /* the weight of the row above; from find_cells on: the blended cell's c */
+    float x[BLOCK];  /* the angle; from find_cells on: less the blended cell's x0 */
+    float a[BLOCK];  /* of the blended cell */
 } queries;
 
 typedef struct cells {
@@ -128,14 +128,25 @@ static inline real draw(const draws *q, size_t s, real *slope)
     return add(load(q->x0 + s), mul(d, mean_slope));
 }
 
-/* hairlut_axis_ask, n pivots: the first cell of the block, and the offset of its first texel */
-static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int pivots)
+/* hairlut_count, of n samples */
+static inline void count(const float *low, const float *high, size_t n, const queries *q, int texels, int *counts)
 {
-    const float *low = axis->rows - HAIRLUT_PIVOTS, *high = low + axis->stride;
-    const int step = axis->step;
+#ifdef HAIRLUT_COUNTS
+    for (size_t s = 0; s < n; s += LANES)
+        istore(counts + s, HAIRLUT_COUNTS(low, high, q->at + s, q->t + s, q->x + s, texels));
+#else
     HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
-        q->cell[k] = HAIRLUT_COUNT(low + q->at[k], high + q->at[k], q->t[k], q->x[k], pivots);
+        counts[k] = HAIRLUT_COUNT(low + q->at[k], high + q->at[k], q->t[k], q->x[k], texels);
+#endif
+}
+
+/* hairlut_axis_ask, so many pivots: the first cell of the block, and the offset of its first texel */
+static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int pivots)
+{
+    const float *low = axis->rows - HAIRLUT_PIVOTS;
+    const int step = axis->step;
+    count(low, low + axis->stride, n, q, pivots, q->cell);
     for (size_t s = 0; s < n; s += LANES) {
         const whole first = imul(iload(q->cell + s), iall(step));
         istore(q->cell + s, first);
@@ -156,21 +167,17 @@ static inline void halve_blocks(const hairlut_axis *axis, size_t n, queries *q)
 /* hairlut_axis_found, but for the cell itself */
 static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, queries *q, size_t s)
 {
-    const mask high = at_least(converted(found), all((float)(axis->columns / 2)));
-    const whole i = ichoose(high, isub(iall(axis->columns - 2), found), found);
-    istore(q->at + s, cell_offset(axis, iload(q->j + s), i, high));
+    const whole mirrored = isub(iall(axis->columns - 2), found);
+    istore(q->at + s, cell_offset(axis, iload(q->j + s), ismaller(found, mirrored), igreater(found, mirrored)));
 }
 
 /* hairlut_axis_find from the count on, among as many texels, and where to read the cell. */
 static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q, int texels)
 {
-    const float *low = axis->rows, *high = low + axis->stride;
-    int count[BLOCK];
-    HAIRLUT_UNROLLED
-    for (size_t k = 0; k < n; ++k)
-        count[k] = HAIRLUT_COUNT(low + q->at[k], high + q->at[k], q->t[k], q->x[k], texels);
+    int counts[BLOCK];
+    count(axis->rows, axis->rows + axis->stride, n, q, texels, counts);
     for (size_t s = 0; s < n; s += LANES) {
-        const whole more = ilarger(isub(iload(count + s), iall(1)), iall(0));
+        const whole more = ilarger(isub(iload(counts + s), iall(1)), iall(0));
         turn_to_nearer_end(axis, ismaller(iadd(iload(q->cell + s), more), iall(axis->columns - 2)), q, s);
     }
 }
@@ -202,8 +209,8 @@ static inline real slope_at(const queries *q, size_t s)
     return root(larger(here, mul(all(hairlut_least_square), square)));
 }
 
-/* Asks for x, moved into the domain: the search is for what a row holds, not for infinity. */
-static inline void ask(const hairlut_axis *axis, real theta_r, real x, queries *q, size_t s)
+/* Asks for x, moved into the domain: the search is for what a row holds, not for infinity. Returns whether the domain holds x. */
+static inline mask ask(const hairlut_axis *axis, real theta_r, real x, queries *q, size_t s)
 {
     const real low = all(axis->low), high = all(axis->high);
     real t;
@@ -212,7 +219,7 @@ static inline void ask(const hairlut_axis *axis, real theta_r, real x, queries *
     istore(q->at + s, imul(j, iall(axis->stride)));
     store(q->t + s, t);
     store(q->x + s, clamp(x, low, high));
-    store(q->holds + s, choose(both(at_least(x, low), at_least(high, x)), all(1.0f), all(0.0f)));
+    return both(at_least(x, low), at_least(high, x));
 }
 
 /* phi less n turns; low where that is not in [low, low + 2 pi) */
@@ -335,41 +342,42 @@ static inline real relative_azimuth(const hairlut_model *model, real phi_r, real
     return wrap_up(model->azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
 }
 
-/* density 0 where an argument is not a number or an azimuth is infinite */
-static inline real where_known(const float *const in[4], size_t s, real pdf)
+/* The density is 0 where an argument is not a number or an azimuth is infinite. */
+static inline mask known_pdf(real theta_r, real phi_r, real theta_i, real phi_i)
 {
-    const real phi_i = load(in[3] + s);
-    const mask finite = at_least(all(FLT_MAX), magnitude(phi_i));
-    return choose(both(finite, known(load(in[0] + s), load(in[1] + s), load(in[2] + s), phi_i)), pdf, all(0.0f));
+    return both(known(theta_r, phi_r, theta_i, phi_i), at_least(all(FLT_MAX), magnitude(phi_i)));
 }
 
 static inline void pdf_direct_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta, phi;
+    float holds[BLOCK]; /* 1, or 0 where the density is 0 */
     for (size_t s = 0; s < n; s += LANES) {
-        const real theta_r = load(in[0] + s);
-        ask(&model->direct_theta, theta_r, load(in[2] + s), &theta, s);
-        ask(&model->direct_phi, theta_r, relative_azimuth(model, load(in[1] + s), load(in[3] + s)), &phi, s);
+        const real theta_r = load(in[0] + s), phi_r = load(in[1] + s), theta_i = load(in[2] + s), phi_i = load(in[3] + s);
+        const mask in_theta = ask(&model->direct_theta, theta_r, theta_i, &theta, s);
+        const mask in_phi = ask(&model->direct_phi, theta_r, relative_azimuth(model, phi_r, phi_i), &phi, s);
+        const mask valid = both(both(in_theta, in_phi), known_pdf(theta_r, phi_r, theta_i, phi_i));
+        store(holds + s, choose(valid, all(1.0f), all(0.0f)));
     }
     find_cells(&model->direct_theta, n, &theta);
     find_cells(&model->direct_phi, n, &phi);
-    for (size_t s = 0; s < n; s += LANES) {
-        const real holds = mul(load(theta.holds + s), load(phi.holds + s));
-        const real slope = mul(slope_at(&theta, s), slope_at(&phi, s));
-        store(out + s, where_known(in, s, over(holds, slope)));
-    }
+    for (size_t s = 0; s < n; s += LANES)
+        store(out + s, over(load(holds + s), mul(slope_at(&theta, s), slope_at(&phi, s))));
 }
 
 static inline void pdf_multiple_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
     queries theta;
-    for (size_t s = 0; s < n; s += LANES)
-        ask(&model->multiple_theta, load(in[0] + s), load(in[2] + s), &theta, s);
-    find_cells(&model->multiple_theta, n, &theta);
+    float holds[BLOCK]; /* the density in the azimuth, or 0 */
     for (size_t s = 0; s < n; s += LANES) {
-        const real holds = mul(load(theta.holds + s), all(hairlut_inverse_two_pi));
-        store(out + s, where_known(in, s, over(holds, slope_at(&theta, s))));
+        const real theta_r = load(in[0] + s), phi_r = load(in[1] + s), theta_i = load(in[2] + s), phi_i = load(in[3] + s);
+        const mask in_theta = ask(&model->multiple_theta, theta_r, theta_i, &theta, s);
+        const mask valid = both(in_theta, known_pdf(theta_r, phi_r, theta_i, phi_i));
+        store(holds + s, choose(valid, all(hairlut_inverse_two_pi), all(0.0f)));
     }
+    find_cells(&model->multiple_theta, n, &theta);
+    for (size_t s = 0; s < n; s += LANES)
+        store(out + s, over(load(holds + s), slope_at(&theta, s)));
 }
 
 /* How many of the n samples left a block takes: a multiple of LANES, 0 when fewer than LANES are left. */

@@ -13,8 +13,7 @@ static inline mask numbers(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CM
 static inline mask both(mask a, mask b) { return (mask)(a & b); }
 static inline int every(mask m) { return m == 0xff; }
 static inline real choose(mask m, real a, real b) { return _mm256_mask_blend_ps(m, b, a); }
-static inline whole ichoose(mask m, whole a, whole b) { return _mm256_mask_blend_epi32(m, b, a); }
-
+static inline mask igreater(whole a, whole b) { return _mm256_cmpgt_epi32_mask(a, b); }
 static inline whole iwhere(mask m, whole a) { return _mm256_maskz_mov_epi32(m, a); }
 
 #define HAIRLUT_COUNT count_at_most

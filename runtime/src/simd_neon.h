@@ -35,7 +35,7 @@ static inline whole isub(whole a, whole b) { return vsubq_s32(a, b); }
 static inline whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
 static inline whole ilarger(whole a, whole b) { return vmaxq_s32(a, b); }
 static inline whole imul(whole a, whole b) { return vmulq_s32(a, b); }
-static inline whole ichoose(mask m, whole a, whole b) { return vbslq_s32(m, a, b); }
+static inline mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
 static inline whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }
 static inline whole truncated(real a) { return vcvtq_s32_f32(a); }
 static inline real shifted(real a) { return vreinterpretq_f32_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 2)); }

@@ -25,11 +25,14 @@ static void axis_pdf(const hairlut_axis *axis, size_t n, const float *theta_r, c
     for (size_t b = 0; b < n; b += BLOCK) {
         const size_t m = n - b < BLOCK ? n - b : BLOCK;
         queries q;
-        for (size_t s = 0; s < m; s += LANES)
-            ask(axis, load(theta_r + b + s), load(x + b + s), &q, s);
+        float holds[BLOCK];
+        for (size_t s = 0; s < m; s += LANES) {
+            const mask inside = ask(axis, load(theta_r + b + s), load(x + b + s), &q, s);
+            store(holds + s, choose(inside, all(1.0f), all(0.0f)));
+        }
         find_cells(axis, m, &q);
         for (size_t s = 0; s < m; s += LANES)
-            store(pdf + b + s, over(load(q.holds + s), slope_at(&q, s)));
+            store(pdf + b + s, over(load(holds + s), slope_at(&q, s)));
     }
 }
 

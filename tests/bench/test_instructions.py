@@ -20,9 +20,9 @@ PINNED = {
     "pdf_multiple": 151,
     "sample_direct_n": 35,
     "sample_multiple_n": 21,
-    "pdf_direct_n": 98,
-    "pdf_multiple_n": 49,
-    "sample_mixture_n": 281,
+    "pdf_direct_n": 91,
+    "pdf_multiple_n": 45,
+    "sample_mixture_n": 271,
 }
 
 

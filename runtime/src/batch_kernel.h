@@ -21,7 +21,7 @@
 
 #include "lobes.h"
 
-enum { BLOCK = 128 }; /* samples a pass */
+enum { BLOCK = 256 }; /* samples a pass */
 
 /* Before a loop over single samples: less of it is counting. clang does so by itself. */
 #if defined(__GNUC__) && !defined(__clang__)

@@ -48,13 +48,15 @@ COMMON = [
 ]
 
 
-def compiled(name: str, program: Path, compiler: str, *flags: str, kernels=HERE_RUN) -> Path:
+def compiled(
+    name: str, program: Path, compiler: str, *flags: str, kernels=HERE_RUN, kernel_flags=KERNELS
+) -> Path:
     """The program, a C source, with the library's sources, compiled anew with these flags; in
     build/tests/name."""
     folder = BUILD / "tests" / name
     folder.mkdir(parents=True, exist_ok=True)
     units = [(SOURCE / f"{unit}.c", []) for unit in CORE]
-    units += [(SOURCE / f"batch_{kernel}.c", KERNELS[kernel]) for kernel in kernels]
+    units += [(SOURCE / f"batch_{kernel}.c", kernel_flags[kernel]) for kernel in kernels]
     units.append((program, []))
     objects = []
     for source, extra in units:

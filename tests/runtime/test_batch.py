@@ -95,6 +95,36 @@ def test_neon_equals_the_other_processors_bit_for_bit(reference):
     assert set(results.values()) == set(reference.values())
 
 
+def simde_is_there() -> bool:
+    source = "#include <simde/x86/avx512.h>"
+    done = subprocess.run(
+        [tool("cc"), "-E", "-x", "c", "-"], input=source, text=True, capture_output=True, check=False
+    )
+    return done.returncode == 0
+
+
+def test_avx512_equals_the_other_kernels_where_no_processor_has_it(reference):
+    if "avx2" not in reference:
+        pytest.skip("this processor has no AVX2")
+    if not simde_is_there():
+        pytest.skip("AVX-512 is not emulated: apt-get install libsimde-dev")
+    program = by_hand.compiled(
+        "batch-avx512-emulated",
+        HERE / "batch_check.c",
+        tool("cc"),
+        "-O1",
+        "-D__builtin_cpu_supports(set)=1",
+        kernels=("avx2", "avx512"),
+        kernel_flags={
+            **by_hand.KERNELS,
+            "avx512": [f"-isystem{HERE / 'emulated'}", "-DHAIRLUT_PLAIN_QUAD"],
+        },
+    )
+    results = checked(program)
+    assert "avx512" in results
+    assert set(results.values()) == set(reference.values())
+
+
 def test_fused_multiply_add_is_noticed(reference):
     """The check rejects a build whose one-direction functions round differently."""
     if "avx2" not in reference:

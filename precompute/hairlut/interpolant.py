@@ -173,9 +173,8 @@ def invert_tail(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array]
     i, h, f, _ = locate(table, theta_r, x)
     m, _ = table.warp.knots(table.width)
     low, high = m[i] + f * h, m[i + 1] + (1 - f) * h
-    upper = (
-        2 * i + 1 > table.width - 1
-    )  # the cell lies above u = 1/2; the middle one is counted from the low end
+    # whether the cell lies above u = 1/2; the middle one is counted from the low end
+    upper = 2 * i + 1 > table.width - 1
     folded = np.where(upper, high, low)
     beyond = folded > 0.5
     return np.where(beyond, 1 - folded, folded), upper ^ beyond

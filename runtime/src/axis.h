@@ -95,8 +95,8 @@ static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta
  * every t, as p + t (q-p) does not where q is far below p. */
 HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad t, int i, int high)
 {
-    const unsigned at = (unsigned)i * (unsigned)axis->pitch; /* unsigned: no sign has to be extended for an address */
-    const float *p = axis->ends[high] + ((size_t)at + (size_t)((unsigned)j * HAIRLUT_CELL)), *q = p + HAIRLUT_CELL;
+    const unsigned column = (unsigned)i * (unsigned)axis->pitch; /* unsigned: an address needs no sign extended */
+    const float *p = axis->ends[high] + column + (unsigned)j * HAIRLUT_CELL, *q = p + HAIRLUT_CELL;
     const hairlut_quad below = hairlut_quad_mul(hairlut_quad_sub(hairlut_quad_all(1.0f), t), hairlut_quad_load(p));
     const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(q));
     float part[3];
@@ -174,16 +174,17 @@ HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_axis *axis, hairlut
 {
     const hairlut_row row = query.row;
     const int stride = axis->stride, last = axis->columns - 2;
-    const float *block = axis->rows + (ptrdiff_t)row.j * stride + query.first;
-    int count, halved = 0; /* the block's texels up to x, the first itself included */
+    const float *texels = axis->rows + (ptrdiff_t)row.j * stride, *block;
+    int first = query.first, count; /* of the block's texels up to x, the first itself included */
     if (HAIRLUT_IS_SMALL(axis->columns)) {
+        block = texels + first;
         count = HAIRLUT_COUNT(block, block + stride, row.t, query.x, HAIRLUT_PIVOTS / 2);
     } else {
-        halved = hairlut_halve(block, stride, row.t, query.x, axis->step);
-        block += halved;
+        first += hairlut_halve(texels + first, stride, row.t, query.x, axis->step);
+        block = texels + first;
         count = HAIRLUT_COUNT(block, block + stride, row.t, query.x, HAIRLUT_PIVOTS);
     }
-    const int i = query.first + halved + (count > 1 ? count - 1 : 0);
+    const int i = first + (count > 1 ? count - 1 : 0);
     const hairlut_found found = {row, i < last ? i : last}; /* more than last: x is the domain's end */
     return found;
 }

@@ -1,4 +1,4 @@
-/* The kernels in AVX2. Compiled with -mavx2 -mbmi2 -mpopcnt. */
+/* The kernels in AVX2. Compiled with -mavx2 -mbmi2. */
 #include "batch.h"
 
 #ifdef HAIRLUT_BATCH_X86

@@ -14,8 +14,8 @@
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, each short enough that a processor has several vectors
  * of it under way: a single pass would wait for where to load from, then for the loads, then for quotients
- * (tests/bench/NOTES.md). In a pass, all inputs of a vector are read before its outputs are written, and inputs that the
- * last pass reads are those of the vectors it writes, which is what allows outputs in place of inputs. */
+ * (tests/bench/NOTES.md). A pass that writes outputs reads the inputs of no other vectors, and each before it writes there;
+ * later passes read no inputs. That is what allows outputs in place of inputs. */
 #ifndef HAIRLUT_BATCH_KERNEL_H
 #define HAIRLUT_BATCH_KERNEL_H
 
@@ -108,6 +108,7 @@ static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
     return cell;
 }
 
+/* From place's results: the blended cells, and the distances from their knots. */
 static inline void fetch(const hairlut_axis *axis, size_t n, draws *q)
 {
     for (size_t s = 0; s < n; s += LANES) {

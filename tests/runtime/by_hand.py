@@ -19,8 +19,9 @@ CORE = (
     "batch_mixture",
     "batch_portable",
 )
-KERNELS = {
-    "avx2": ["-mavx2", "-mbmi2", "-mpopcnt"],
+# kernels, with what they are compiled with besides
+X86 = {
+    "avx2": ["-mavx2", "-mbmi2"],
     "avx512": [
         "-mavx512f",
         "-mavx512bw",
@@ -29,9 +30,9 @@ KERNELS = {
         "-mbmi2",
         "-mpopcnt",
     ],
-    "neon": [],
 }
-HERE_RUN = ("neon",) if platform.machine() in ("aarch64", "arm64") else ("avx2", "avx512")
+NEON = {"neon": []}
+HERE_RUN = NEON if platform.machine() in ("aarch64", "arm64") else X86
 INCLUDE = [f"-I{RUNTIME / 'include'}", f"-I{SOURCE}"]
 # the library's flags: no fused multiply-add, no errno
 COMMON = [
@@ -48,15 +49,13 @@ COMMON = [
 ]
 
 
-def compiled(
-    name: str, program: Path, compiler: str, *flags: str, kernels=HERE_RUN, kernel_flags=KERNELS
-) -> Path:
-    """The program, a C source, with the library's sources, compiled anew with these flags; in
-    build/tests/name."""
+def compiled(name: str, program: Path, compiler: str, *flags: str, kernels=HERE_RUN) -> Path:
+    """The program, a C source, with the library's sources, compiled anew with these flags, and kernels with
+    flags of their own besides; in build/tests/name."""
     folder = BUILD / "tests" / name
     folder.mkdir(parents=True, exist_ok=True)
     units = [(SOURCE / f"{unit}.c", []) for unit in CORE]
-    units += [(SOURCE / f"batch_{kernel}.c", kernel_flags[kernel]) for kernel in kernels]
+    units += [(SOURCE / f"batch_{kernel}.c", extra) for kernel, extra in kernels.items()]
     units.append((program, []))
     objects = []
     for source, extra in units:

@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from runtime.by_hand import COMMON, HERE_RUN
+from runtime.by_hand import COMMON, HERE_RUN, NEON, X86
 from runtime.c_library import BUILD, HERE, build, run, tool
 
 from runtime import by_hand
@@ -89,7 +89,7 @@ def test_neon_equals_the_other_processors_bit_for_bit(reference):
     )
     if not compiler or not emulator:
         pytest.skip("NEON is not run: apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user")
-    program = compiled("aarch64", compiler, "-O2", "-static", kernels=("neon",))
+    program = compiled("aarch64", compiler, "-O2", "-static", kernels=NEON)
     results = checked(emulator, program)
     assert "neon" in results
     assert set(results.values()) == set(reference.values())
@@ -108,17 +108,12 @@ def test_avx512_equals_the_other_kernels_where_no_processor_has_it(reference):
         pytest.skip("this processor has no AVX2")
     if not simde_is_there():
         pytest.skip("AVX-512 is not emulated: apt-get install libsimde-dev")
-    program = by_hand.compiled(
-        "batch-avx512-emulated",
-        HERE / "batch_check.c",
+    program = compiled(
+        "avx512-emulated",
         tool("cc"),
         "-O1",
         "-D__builtin_cpu_supports(set)=1",
-        kernels=("avx2", "avx512"),
-        kernel_flags={
-            **by_hand.KERNELS,
-            "avx512": [f"-isystem{HERE / 'emulated'}", "-DHAIRLUT_PLAIN_QUAD"],
-        },
+        kernels=X86 | {"avx512": [f"-isystem{HERE / 'emulated'}", "-DHAIRLUT_PLAIN_QUAD"]},
     )
     results = checked(program)
     assert "avx512" in results

@@ -22,7 +22,7 @@ from .warp import Warp
 
 TABLES = ("direct_theta", "direct_phi", "multiple_theta")
 AZIMUTHS = {"sum": "HAIRLUT_AZIMUTH_SUM", "difference": "HAIRLUT_AZIMUTH_DIFFERENCE"}
-PIVOTS, LINE = 16, 16  # runtime/src/internal.h
+GROUP = 16  # texels, runtime/src/internal.h
 WARPS = {"octaves": "HAIRLUT_WARP_OCTAVES", "uniform": "HAIRLUT_WARP_UNIFORM"}
 
 
@@ -133,22 +133,24 @@ def _literal(x: float) -> str:
 
 def _step(width: int) -> int:
     """Cells of a block of the search: 9 blocks of 8 where those do, else 17 of a power of two."""
-    few = PIVOTS // 2
+    few = GROUP // 2
     if width - 1 <= (few + 1) * few:
         return few
-    return next(step for step in (16, 32, 64, 128, 256) if width - 1 <= (PIVOTS + 1) * step)
+    return next(step for step in (16, 32, 64, 128, 256) if width - 1 <= (GROUP + 1) * step)
 
 
 def _rows(table: Table) -> np.ndarray:
-    """The rows of the search, as the runtime stores them (runtime/src/internal.h)."""
-    texels, step = np.concatenate([table.texels, table.texels[-1:]]), _step(table.width)
-    nothing = np.finfo(np.float32).max
-    pivots = np.full((len(texels), PIVOTS), nothing, np.float32)
-    inner = texels[:, step : table.width - 1 : step]
-    pivots[:, : inner.shape[1]] = inner
-    blocks = table.width + -table.width % step
-    beyond = blocks + -blocks % LINE - table.width
-    return np.concatenate([pivots, np.pad(texels, ((0, 0), (0, beyond)), constant_values=nothing)], axis=1)
+    """The rows of the search, as the runtime stores them (runtime/src/internal.h): groups of the texels that
+    end blocks, then cells; in a small table, with their changes to the row above."""
+    step, cells = _step(table.width), table.width - 1
+    size = min(step, GROUP)
+    columns = np.concatenate([np.arange(1, size + 1) * step, np.arange(1, cells + -cells % step + 1)])
+    inner, of = columns < cells, np.minimum(columns, cells)
+    texels = np.concatenate([table.texels, table.texels[-1:]])[:, of]
+    stored = [np.where(inner, texels, np.finfo(np.float32).max)]
+    if size < GROUP:
+        stored.append(np.where(inner, np.diff(texels, axis=0, append=texels[-1:]), 0))
+    return np.stack([part.reshape(len(texels), -1, size) for part in stored], axis=2).reshape(len(texels), -1)
 
 
 def _cells(table: Table) -> np.ndarray:

@@ -109,7 +109,7 @@ enum { HAIRLUT_MESSAGE_SIZE = 512 };
  * HAIRLUT_MESSAGE_SIZE bytes and receives what is wrong, where, and what was expected. Reads width*height floats. */
 HAIRLUT_API hairlut_result hairlut_validate(const hairlut_table *table, char *message);
 
-/* Builds a model from three tables in memory. The texels are copied, into about six times their own memory in the order in
+/* Builds a model from three tables in memory. The texels are copied, into five to seven times their own memory in the order in
  * which samples read them: the caller may free them when this returns. Every table is validated first; theta tables must
  * lie within [-pi/2, pi/2], the azimuth table within [0, 2 pi]. On error *out is NULL and nothing stays allocated. Free with
  * hairlut_free. */

@@ -20,15 +20,6 @@
 #define HAIRLUT_COUNT hairlut_count /* a kernel with wider vectors defines its own, for n of 8 and 16 */
 #endif
 
-/* gcc -O2 would call the longer functions and pass what they return through memory: a density takes 1.6 times as long. */
-#if defined(__GNUC__)
-#define HAIRLUT_INLINE static inline __attribute__((always_inline))
-#elif defined(_MSC_VER)
-#define HAIRLUT_INLINE static __forceinline
-#else
-#define HAIRLUT_INLINE static inline
-#endif
-
 static const float hairlut_least_square = 6.5e-4f; /* below (0.05 / 1.95)^2 */
 
 /* Where theta_r lies: the row below it, and the weight of the row above, in [0,1). */
@@ -115,30 +106,28 @@ HAIRLUT_INLINE hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
     return knot;
 }
 
-static inline float hairlut_blend(float a, float b, float t)
-{
-    return a + t * (b - a);
-}
-
-/* How many of n texels, blended from those of the row below (low) and above (high), are at most x; n is 8 or 16. A count has
- * no branch that depends on x. */
-static inline int hairlut_count(const float *low, const float *high, float t, float x, int n)
+/* How many of a group's n texels, blended with those of the row above, are at most x; n is that of a group. `above` is the
+ * group of the row above, or in a small table the changes to it. A count has no branch that depends on x. */
+static inline int hairlut_count(const float *group, const float *above, float t, float x, int n)
 {
     hairlut_tally tally = hairlut_tally_zero();
     for (int k = 0; k < n; k += 4) {
-        const hairlut_quad from = hairlut_quad_load(low + k), to = hairlut_quad_load(high + k);
-        const hairlut_quad change = hairlut_quad_mul(hairlut_quad_all(t), hairlut_quad_sub(to, from));
-        tally = hairlut_tally_at_most(tally, hairlut_quad_add(from, change), x);
+        const hairlut_quad from = hairlut_quad_load(group + k), to = hairlut_quad_load(above + k);
+        const hairlut_quad change = n == HAIRLUT_SMALL_GROUP ? to : hairlut_quad_sub(to, from);
+        tally = hairlut_tally_at_most(tally, hairlut_quad_add(from, hairlut_quad_mul(hairlut_quad_all(t), change)), x);
     }
     return hairlut_tally_sum(tally);
 }
 
-/* Halves the n cells from a on in which x lies, n a power of two, down to at most HAIRLUT_PIVOTS: the first of those. */
-static inline int hairlut_halve(const float *a, int stride, float t, float x, int n)
+/* Halves a block of n cells, n a power of two, until the part in which x lies is a group's: its first cell. Not for small
+ * tables. */
+static inline int hairlut_halve(const float *groups, int stride, float t, float x, int n)
 {
     int first = 0;
-    for (; n > HAIRLUT_PIVOTS; n /= 2)
-        first += hairlut_blend(a[first + n / 2], a[first + n / 2 + stride], t) <= x ? n / 2 : 0;
+    for (n /= 2; n >= HAIRLUT_GROUP; n /= 2) {
+        const float *low_end = groups + first + n - 1, from = low_end[0], to = low_end[stride]; /* of the upper half */
+        first += from + t * (to - from) <= x ? n : 0;
+    }
     return first;
 }
 
@@ -148,7 +137,7 @@ typedef struct hairlut_found {
     int cell; /* counted from the low end */
 } hairlut_found;
 
-/* A search as far as the pivots take it: the row, the angle, moved into the domain, and the first cell of its block. */
+/* A search as far as the first group takes it: the row, the angle, moved into the domain, and the first cell of its block. */
 typedef struct hairlut_query {
     hairlut_row row;
     float x;
@@ -159,33 +148,29 @@ typedef struct hairlut_query {
  * row holds, not infinity. */
 HAIRLUT_INLINE hairlut_query hairlut_axis_ask(const hairlut_axis *axis, float theta_r, float x)
 {
-    const int stride = axis->stride;
     hairlut_query query = {hairlut_axis_row(axis, theta_r), hairlut_axis_inside(axis, x), 0};
-    const float *pivots = axis->rows + (ptrdiff_t)query.row.j * stride - HAIRLUT_PIVOTS;
+    const float t = query.row.t, *group = axis->rows + (ptrdiff_t)query.row.j * axis->stride;
     if (HAIRLUT_IS_SMALL(axis->columns))
-        query.first = HAIRLUT_PIVOTS / 2 * HAIRLUT_COUNT(pivots, pivots + stride, query.row.t, query.x, HAIRLUT_PIVOTS / 2);
+        query.first = HAIRLUT_SMALL_GROUP * HAIRLUT_COUNT(group, group + HAIRLUT_SMALL_GROUP, t, query.x, HAIRLUT_SMALL_GROUP);
     else
-        query.first = axis->step * HAIRLUT_COUNT(pivots, pivots + stride, query.row.t, query.x, HAIRLUT_PIVOTS);
+        query.first = axis->step * HAIRLUT_COUNT(group, group + axis->stride, t, query.x, HAIRLUT_GROUP);
     return query;
 }
 
 /* The rest of it: the cell whose blended texels enclose x. */
 HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_axis *axis, hairlut_query query)
 {
-    const hairlut_row row = query.row;
-    const int stride = axis->stride, last = axis->columns - 2;
-    const float *texels = axis->rows + (ptrdiff_t)row.j * stride, *block;
-    int first = query.first, count; /* of the block's texels up to x, the first itself included */
+    const float t = query.row.t;
+    const float *group = axis->rows + (ptrdiff_t)query.row.j * axis->stride + HAIRLUT_LINE; /* of the row's first cell */
+    hairlut_found found = {query.row, query.first};
     if (HAIRLUT_IS_SMALL(axis->columns)) {
-        block = texels + first;
-        count = HAIRLUT_COUNT(block, block + stride, row.t, query.x, HAIRLUT_PIVOTS / 2);
+        group += HAIRLUT_SPREAD(axis->columns) * found.cell;
+        found.cell += HAIRLUT_COUNT(group, group + HAIRLUT_SMALL_GROUP, t, query.x, HAIRLUT_SMALL_GROUP);
     } else {
-        first += hairlut_halve(texels + first, stride, row.t, query.x, axis->step);
-        block = texels + first;
-        count = HAIRLUT_COUNT(block, block + stride, row.t, query.x, HAIRLUT_PIVOTS);
+        found.cell += hairlut_halve(group + found.cell, axis->stride, t, query.x, axis->step);
+        group += found.cell;
+        found.cell += HAIRLUT_COUNT(group, group + axis->stride, t, query.x, HAIRLUT_GROUP);
     }
-    const int i = first + (count > 1 ? count - 1 : 0);
-    const hairlut_found found = {row, i < last ? i : last}; /* more than last: x is the domain's end */
     return found;
 }
 

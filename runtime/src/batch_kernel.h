@@ -8,8 +8,8 @@
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
- *   HAIRLUT_COUNT(low, high, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
- *   HAIRLUT_COUNTS(low, high, at, t, x, n)  may be defined: lane l has the count from low + at[l] and high + at[l], t[l], x[l]
+ *   HAIRLUT_COUNT(group, above, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
+ *   HAIRLUT_COUNTS(groups, above, at, t, x, n)  may be defined: lane l has the count of groups and above + at[l], t[l], x[l]
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, each short enough that a processor has several vectors
@@ -44,7 +44,7 @@ typedef struct draws {
 typedef struct queries {
     int j[BLOCK];    /* the row */
     int cell[BLOCK]; /* as far as it is found, counted from the low end */
-    int at[BLOCK];   /* where to read on: an offset among the texels, then among the cells */
+    int at[BLOCK];   /* where to read on: an offset among the rows, then among the cells */
     float t[BLOCK];  /* the weight of the row above; from find_cells on: the blended cell's c */
     float x[BLOCK];  /* the angle; from find_cells on: less the blended cell's x0 */
     float a[BLOCK];  /* of the blended cell */
@@ -129,37 +129,38 @@ static inline real draw(const draws *q, size_t s, real *slope)
     return add(load(q->x0 + s), mul(d, mean_slope));
 }
 
-/* hairlut_count, of n samples */
-static inline void count(const float *low, const float *high, size_t n, const queries *q, int texels, int *counts)
+/* hairlut_count, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0 */
+HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t n, const queries *q, int size, int *counts)
 {
+    const float *above = groups + (size == HAIRLUT_SMALL_GROUP ? HAIRLUT_SMALL_GROUP : axis->stride);
 #ifdef HAIRLUT_COUNTS
     for (size_t s = 0; s < n; s += LANES)
-        istore(counts + s, HAIRLUT_COUNTS(low, high, q->at + s, q->t + s, q->x + s, texels));
+        istore(counts + s, HAIRLUT_COUNTS(groups, above, q->at + s, q->t + s, q->x + s, size));
 #else
     HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
-        counts[k] = HAIRLUT_COUNT(low + q->at[k], high + q->at[k], q->t[k], q->x[k], texels);
+        counts[k] = HAIRLUT_COUNT(groups + q->at[k], above + q->at[k], q->t[k], q->x[k], size);
 #endif
 }
 
-/* hairlut_axis_ask, so many pivots: the first cell of the block, and the offset of its first texel */
-static inline void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int pivots)
+/* hairlut_axis_ask with groups of `size`: the first cell of the block, and the offset of its first group */
+HAIRLUT_INLINE void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int size)
 {
-    const float *low = axis->rows - HAIRLUT_PIVOTS;
     const int step = axis->step;
-    count(low, low + axis->stride, n, q, pivots, q->cell);
+    count(axis, axis->rows, n, q, size, q->cell);
     for (size_t s = 0; s < n; s += LANES) {
         const whole first = imul(iload(q->cell + s), iall(step));
         istore(q->cell + s, first);
-        istore(q->at + s, iadd(iload(q->at + s), first));
+        istore(q->at + s, iadd(iload(q->at + s), size == HAIRLUT_SMALL_GROUP ? iadd(first, first) : first));
     }
 }
 
 /* hairlut_halve */
 static inline void halve_blocks(const hairlut_axis *axis, size_t n, queries *q)
 {
-    for (size_t k = 0; axis->step > HAIRLUT_PIVOTS && k < n; ++k) {
-        const int halved = hairlut_halve(axis->rows + q->at[k], axis->stride, q->t[k], q->x[k], axis->step);
+    const float *groups = axis->rows + HAIRLUT_LINE;
+    for (size_t k = 0; axis->step > HAIRLUT_GROUP && k < n; ++k) {
+        const int halved = hairlut_halve(groups + q->at[k], axis->stride, q->t[k], q->x[k], axis->step);
         q->cell[k] += halved;
         q->at[k] += halved;
     }
@@ -172,27 +173,25 @@ static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, que
     istore(q->at + s, cell_offset(axis, iload(q->j + s), ismaller(found, mirrored), igreater(found, mirrored)));
 }
 
-/* hairlut_axis_find from the count on, among as many texels, and where to read the cell. */
-static inline void find_in_blocks(const hairlut_axis *axis, size_t n, queries *q, int texels)
+/* hairlut_axis_find from the count on, and where to read the cell. */
+HAIRLUT_INLINE void find_in_groups(const hairlut_axis *axis, size_t n, queries *q, int size)
 {
     int counts[BLOCK];
-    count(axis->rows, axis->rows + axis->stride, n, q, texels, counts);
-    for (size_t s = 0; s < n; s += LANES) {
-        const whole more = ilarger(isub(iload(counts + s), iall(1)), iall(0));
-        turn_to_nearer_end(axis, ismaller(iadd(iload(q->cell + s), more), iall(axis->columns - 2)), q, s);
-    }
+    count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
+    for (size_t s = 0; s < n; s += LANES)
+        turn_to_nearer_end(axis, iadd(iload(q->cell + s), iload(counts + s)), q, s);
 }
 
 /* hairlut_axis_look_up and hairlut_axis_found */
 static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q)
 {
     if (HAIRLUT_IS_SMALL(axis->columns)) {
-        find_blocks(axis, n, q, HAIRLUT_PIVOTS / 2);
-        find_in_blocks(axis, n, q, HAIRLUT_PIVOTS / 2);
+        find_blocks(axis, n, q, HAIRLUT_SMALL_GROUP);
+        find_in_groups(axis, n, q, HAIRLUT_SMALL_GROUP);
     } else {
-        find_blocks(axis, n, q, HAIRLUT_PIVOTS);
+        find_blocks(axis, n, q, HAIRLUT_GROUP);
         halve_blocks(axis, n, q);
-        find_in_blocks(axis, n, q, HAIRLUT_PIVOTS);
+        find_in_groups(axis, n, q, HAIRLUT_GROUP);
     }
     for (size_t s = 0; s < n; s += LANES) {
         const cells cell = load_cells(axis, q->at + s, load(q->t + s));

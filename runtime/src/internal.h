@@ -9,26 +9,33 @@
 /* A stored table is its rows, which find the cell of an angle, and its cells, which a sample and a density are taken from.
  * Both repeat the last row, so that theta_r at the end of its range has a row above it.
  *
- * A stored row: the pivots of the search for a cell; the texels; HAIRLUT_NO_TEXEL up to whole blocks and whole cache lines.
- * Pivot k is texel (k+1)*step, which begins a block of `step` cells, or HAIRLUT_NO_TEXEL where that is beyond the last cell.
- * A line follows the last row, because kernels read whole vectors. */
-enum { HAIRLUT_PIVOTS = 16, HAIRLUT_LINE = 16 /* floats of a cache line */ };
+ * A stored row is groups of texels, which are the ends of parts of it: a count of those up to x tells in which part x lies. The
+ * first group is the ends of blocks of `step` cells: its texel k is that of column (k+1)*step. Group g of those that follow is
+ * the ends of cells, columns g*size+1 to (g+1)*size, where size is that of a group. HAIRLUT_NO_TEXEL takes the place of the
+ * last column, the end of the domain, and of those beyond.
+ *
+ * A group fills a cache line: 16 texels, or in a small table 8 and their changes to the row above. Those make a search of one
+ * row instead of two; in a large table they would crowd more out of the caches than they save. */
+enum { HAIRLUT_GROUP = 16, HAIRLUT_SMALL_GROUP = HAIRLUT_GROUP / 2, HAIRLUT_LINE = 16 /* floats of a cache line */ };
 #define HAIRLUT_NO_TEXEL FLT_MAX
 #define HAIRLUT_WHOLE(n, size) (((n) + (size) - 1) / (size) * (size))
-/* The search needs only half of the pivots where 9 blocks of 8 hold all cells. Else a block is the least power of two, from
- * 16 on, of which 17 blocks hold them; a side is at most 4096. */
-#define HAIRLUT_IS_SMALL(columns) ((columns) - 1 <= (HAIRLUT_PIVOTS / 2 + 1) * (HAIRLUT_PIVOTS / 2))
-#define HAIRLUT_FITS(columns, step) ((columns) - 1 <= (HAIRLUT_PIVOTS + 1) * (step))
+/* Small: 9 blocks of 8 hold all cells. Else a block is the least power of two, from 16 on, of which 17 blocks hold them; a side
+ * is at most 4096. */
+#define HAIRLUT_IS_SMALL(columns) ((columns) - 1 <= (HAIRLUT_SMALL_GROUP + 1) * HAIRLUT_SMALL_GROUP)
+#define HAIRLUT_FITS(columns, step) ((columns) - 1 <= (HAIRLUT_GROUP + 1) * (step))
 #define HAIRLUT_STEP(columns)                                                                                         \
-    (HAIRLUT_IS_SMALL(columns)    ? HAIRLUT_PIVOTS / 2                                                                \
+    (HAIRLUT_IS_SMALL(columns)    ? HAIRLUT_SMALL_GROUP                                                               \
      : HAIRLUT_FITS(columns, 16)  ? 16                                                                                \
      : HAIRLUT_FITS(columns, 32)  ? 32                                                                                \
      : HAIRLUT_FITS(columns, 64)  ? 64                                                                                \
      : HAIRLUT_FITS(columns, 128) ? 128                                                                               \
                                   : 256)
+#define HAIRLUT_GROUP_SIZE(columns) (HAIRLUT_IS_SMALL(columns) ? HAIRLUT_SMALL_GROUP : HAIRLUT_GROUP)
+/* Floats of a row for each cell, of a row, and of all rows */
+#define HAIRLUT_SPREAD(columns) (HAIRLUT_LINE / HAIRLUT_GROUP_SIZE(columns))
 #define HAIRLUT_STRIDE(columns)                                                                                       \
-    (HAIRLUT_PIVOTS + HAIRLUT_WHOLE(HAIRLUT_WHOLE(columns, HAIRLUT_STEP(columns)), HAIRLUT_LINE))
-#define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * ((height) + 1) + HAIRLUT_LINE)
+    (HAIRLUT_LINE + HAIRLUT_SPREAD(columns) * HAIRLUT_WHOLE((columns) - 1, HAIRLUT_STEP(columns)))
+#define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * ((height) + 1))
 
 /* A cell of one row, seen from the end of the row that is nearer: with m = min(u, 1-u) and d = m - u0,
  *
@@ -51,9 +58,18 @@ enum { HAIRLUT_CELL = 4 /* floats */ };
 #define HAIRLUT_LINE_ALIGNED
 #endif
 
+/* gcc -O2 would call the longer functions and pass what they return through memory: a density takes 1.6 times as long. */
+#if defined(__GNUC__)
+#define HAIRLUT_INLINE static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define HAIRLUT_INLINE static __forceinline
+#else
+#define HAIRLUT_INLINE static inline
+#endif
+
 /* A table ready for sampling. */
 typedef struct hairlut_axis {
-    const float *rows;  /* the first texel of row 0; best if its pivots are aligned to a cache line */
+    const float *rows;    /* row 0; best if aligned to a cache line */
     const float *ends[2]; /* the first cells of row 0, from the low and from the high end on; best if aligned to a cell */
     int pitch;            /* floats from one cell of a row to the next */
     float row_origin; /* theta_r of row 0 */
@@ -68,18 +84,18 @@ typedef struct hairlut_axis {
     int columns;
     int height;
     int stride; /* floats from one row to the next */
-    int step;   /* cells of a block, from one pivot to the next */
+    int step;   /* cells of a block */
 } hairlut_axis;
 
 /* The bits of a float shifted right by two are those of F / 2^96, F as in warp.h. */
 #define HAIRLUT_SHIFT_SCALE 79228162514264337593543950336.0f /* 2^96 */
 
 /* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. `stored`
- * are the rows with their pivots, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats;
+ * are the rows, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats;
  * f0 and k are hairlut_warp_scale's, rounded to floats. */
 #define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)      \
     {                                                                                                                 \
-        (stored) + HAIRLUT_PIVOTS, {cells, (cells) + HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_)},                \
+        stored, {cells, (cells) + HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_)},                                   \
             HAIRLUT_PITCH(height_), row_origin_, row_scale_, (float)((height_) - 1), warp_, e_,                       \
             (warp_) == HAIRLUT_WARP_OCTAVES ? HAIRLUT_SHIFT_SCALE / (k_) : 1.0f / (k_), (f0_) * (1.0f / (k_)), low_,  \
             high_, columns_, height_, HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                \

@@ -101,16 +101,25 @@ hairlut_result hairlut_validate(const hairlut_table *table, char *message)
     return result;
 }
 
-/* A row as internal.h lays it out. */
-static void store_row(float *stored, const float *row, int width)
+/* A group of the texels of columns i, i + step and so on. */
+static void store_group(float *stored, const float *row, const float *above, int width, int i, int step)
 {
-    for (int k = 0; k < HAIRLUT_PIVOTS; ++k) {
-        const int i = (k + 1) * HAIRLUT_STEP(width);
-        stored[k] = i <= width - 2 ? row[i] : HAIRLUT_NO_TEXEL;
+    const int size = HAIRLUT_GROUP_SIZE(width);
+    for (int k = 0; k < size; ++k, i += step) {
+        const int inner = i < width - 1;
+        stored[k] = inner ? row[i] : HAIRLUT_NO_TEXEL;
+        if (HAIRLUT_IS_SMALL(width))
+            stored[size + k] = inner ? above[i] - row[i] : 0.0f;
     }
-    memcpy(stored + HAIRLUT_PIVOTS, row, (size_t)width * sizeof *row);
-    for (int k = HAIRLUT_PIVOTS + width; k < HAIRLUT_STRIDE(width); ++k)
-        stored[k] = HAIRLUT_NO_TEXEL;
+}
+
+/* A row as internal.h lays it out. */
+static void store_row(float *stored, const float *row, const float *above, int width)
+{
+    const int step = HAIRLUT_STEP(width), size = HAIRLUT_GROUP_SIZE(width);
+    store_group(stored, row, above, width, step, step);
+    for (int first = 0; first < HAIRLUT_WHOLE(width - 1, step); first += size)
+        store_group(stored += HAIRLUT_LINE, row, above, width, first + 1, 1);
 }
 
 /* A row counted from one of its ends: texel and knot k, and what follows from them for cell k, between knots k and k+1. */
@@ -204,11 +213,10 @@ static float *build_axis(hairlut_axis *axis, const hairlut_table *t, float *memo
         knots[k] = (float)hairlut_warp_u(t->warp, &scale, t->width, k);
     for (int j = 0; j <= t->height; ++j) {
         const float *row = t->texels + (size_t)(j < t->height ? j : t->height - 1) * (size_t)t->width;
-        store_row(rows + (size_t)j * (size_t)axis->stride, row, t->width);
+        const float *above = j + 1 < t->height ? row + t->width : row;
+        store_row(rows + (size_t)j * (size_t)axis->stride, row, above, t->width);
         store_cells(axis, cells, j, row, knots, t->cell_limit);
     }
-    for (int k = 1; k <= HAIRLUT_LINE; ++k)
-        cells[-k] = 0.0f;
     return cells + cells_floats(t);
 }
 

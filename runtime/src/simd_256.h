@@ -26,7 +26,6 @@ static inline whole iall(int a) { return _mm256_set1_epi32(a); }
 static inline whole iadd(whole a, whole b) { return _mm256_add_epi32(a, b); }
 static inline whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
 static inline whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
-static inline whole ilarger(whole a, whole b) { return _mm256_max_epi32(a, b); }
 static inline whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
 static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
 static inline real shifted(real a) { return _mm256_castsi256_ps(_mm256_srli_epi32(_mm256_castps_si256(a), 2)); }

@@ -3,6 +3,7 @@
 #ifndef HAIRLUT_SIMD_AVX512_H
 #define HAIRLUT_SIMD_AVX512_H
 
+#include "internal.h"
 #include "simd_256.h"
 
 typedef __mmask8 mask;
@@ -17,22 +18,22 @@ static inline mask igreater(whole a, whole b) { return _mm256_cmpgt_epi32_mask(a
 static inline whole iwhere(mask m, whole a) { return _mm256_maskz_mov_epi32(m, a); }
 
 #define HAIRLUT_COUNT count_at_most
-static inline unsigned below8(const float *low, const float *high, float t, float x)
+static inline unsigned below8(const float *group, const float *changes, float t, float x)
 {
-    const real from = load(low), blend = add(from, mul(all(t), sub(load(high), from)));
+    const real blend = add(load(group), mul(all(t), load(changes)));
     return _mm256_cmp_ps_mask(blend, all(x), _CMP_LE_OQ);
 }
 
-static inline unsigned below16(const float *low, const float *high, float t, float x)
+static inline unsigned below16(const float *group, const float *above, float t, float x)
 {
-    const __m512 from = _mm512_loadu_ps(low), change = _mm512_sub_ps(_mm512_loadu_ps(high), from);
+    const __m512 from = _mm512_loadu_ps(group), change = _mm512_sub_ps(_mm512_loadu_ps(above), from);
     const __m512 blend = _mm512_add_ps(from, _mm512_mul_ps(_mm512_set1_ps(t), change));
     return _mm512_cmp_ps_mask(blend, _mm512_set1_ps(x), _CMP_LE_OQ);
 }
 
-static inline int count_at_most(const float *low, const float *high, float t, float x, int n)
+HAIRLUT_INLINE int count_at_most(const float *group, const float *above, float t, float x, int n)
 {
-    return _mm_popcnt_u32(n > 8 ? below16(low, high, t, x) : below8(low, high, t, x));
+    return _mm_popcnt_u32(n == HAIRLUT_SMALL_GROUP ? below8(group, above, t, x) : below16(group, above, t, x));
 }
 
 #endif

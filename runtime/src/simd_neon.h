@@ -33,7 +33,6 @@ static inline whole iall(int a) { return vdupq_n_s32(a); }
 static inline whole iadd(whole a, whole b) { return vaddq_s32(a, b); }
 static inline whole isub(whole a, whole b) { return vsubq_s32(a, b); }
 static inline whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
-static inline whole ilarger(whole a, whole b) { return vmaxq_s32(a, b); }
 static inline whole imul(whole a, whole b) { return vmulq_s32(a, b); }
 static inline mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
 static inline whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }

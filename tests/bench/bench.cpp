@@ -115,6 +115,13 @@ void add_uniform(const std::string &how, const axis_kernels &kernels, const std:
     });
 }
 
+// The texel of column i in row j: the x0 of the cell that begins there, seen from the nearer end
+float texel(const hairlut_axis &axis, int j, int i)
+{
+    const int mirrored = axis.columns - 1 - i;
+    return axis.ends[mirrored < i][std::min(i, mirrored) * axis.pitch + HAIRLUT_CELL * j];
+}
+
 // The four corners of every cell as one record of 16 bytes, and the records of the samples' cells.
 void add_floor(const axis_kernels &kernels, const std::string &name, const hairlut_axis &axis)
 {
@@ -122,8 +129,7 @@ void add_floor(const axis_kernels &kernels, const std::string &name, const hairl
     auto records = std::make_shared<std::vector<float>>(4 * static_cast<size_t>(cells * (axis.height - 1)));
     for (int j = 0, k = 0; j + 1 < axis.height; ++j)
         for (int i = 0; i < cells; ++i, k += 4) {
-            const float *corner = axis.rows + j * axis.stride + i;
-            const float four[4] = {corner[0], corner[1], corner[axis.stride], corner[axis.stride + 1]};
+            const float four[4] = {texel(axis, j, i), texel(axis, j, i + 1), texel(axis, j + 1, i), texel(axis, j + 1, i + 1)};
             std::copy(four, four + 4, records->begin() + k);
         }
     auto index = std::make_shared<std::vector<int>>(count);

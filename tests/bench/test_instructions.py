@@ -16,13 +16,13 @@ TOLERANCE = 0.15
 PINNED = {
     "sample_direct": 202,
     "sample_multiple": 134,
-    "pdf_direct": 333,
-    "pdf_multiple": 151,
-    "sample_direct_n": 35,
-    "sample_multiple_n": 21,
-    "pdf_direct_n": 91,
-    "pdf_multiple_n": 45,
-    "sample_mixture_n": 271,
+    "pdf_direct": 310,
+    "pdf_multiple": 140,
+    "sample_direct_n": 34,
+    "sample_multiple_n": 20,
+    "pdf_direct_n": 69,
+    "pdf_multiple_n": 34,
+    "sample_mixture_n": 240,
 }
 
 

@@ -35,17 +35,20 @@ def with_last_twice(texels):
     return np.concatenate([texels, texels[-1:]])
 
 
-def test_rows_are_the_texels_after_their_pivots(source, shipped):
+def test_rows_are_groups_of_inner_texels_and_of_their_changes(source, shipped):
     table, _, _, _ = shipped
-    rows, texels = array(source, table, "rows"), with_last_twice(table.texels)
-    assert (rows[:, 16 : 16 + table.width] == texels).all()
-    assert (rows[:, 16 + table.width :] == np.finfo(np.float32).max).all()
-    pivots = rows[:, :16]
-    step = list(table.texels[0]).index(pivots[0, 0])
-    for k in range(16):
-        inside = (k + 1) * step <= table.width - 2
-        expected = texels[:, (k + 1) * step] if inside else np.finfo(np.float32).max
-        assert (pivots[:, k] == expected).all()
+    size, last = 8, table.width - 1
+    texels = with_last_twice(table.texels)
+    groups = array(source, table, "rows").reshape(len(texels), -1, 2, size)
+    changes = np.diff(texels, axis=0, append=texels[-1:])
+    for values, of, beyond in ((texels, 0, np.finfo(np.float32).max), (changes, 1, 0)):
+        stored = groups[:, :, of]
+        inner = stored[:, 1:].reshape(len(texels), -1)
+        assert (inner[:, : last - 1] == values[:, 1:last]).all()
+        assert (inner[:, last - 1 :] == beyond).all()
+        pivots = values[:, size:last:size]
+        assert (stored[:, 0, : pivots.shape[1]] == pivots).all()
+        assert (stored[:, 0, pivots.shape[1] :] == beyond).all()
 
 
 def test_cells_are_those_of_the_interpolant_from_both_ends(source, shipped):

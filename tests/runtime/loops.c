@@ -78,13 +78,15 @@ LOOP void axis_invert(const hairlut_model *model, int axis, size_t n, const floa
         u[i] = hairlut_axis_invert(axis_of(model, axis), theta_r[i], x[i]);
 }
 
-/* The width, in x, of the cell that holds x. */
+/* The width, in x, of the cell that holds x: from its nearer knot to that of the next cell. */
 LOOP void axis_cell_width(const hairlut_model *model, int axis, size_t n, const float *theta_r, const float *x, float *width)
 {
     for (size_t i = 0; i < n; ++i) {
         const hairlut_axis *a = axis_of(model, axis);
         const hairlut_found found = hairlut_axis_look_up(a, theta_r[i], x[i]);
-        const float *low = a->rows + (ptrdiff_t)found.row.j * a->stride + found.cell, *high = low + a->stride;
-        width[i] = hairlut_blend(low[1], high[1], found.row.t) - hairlut_blend(low[0], high[0], found.row.t);
+        const hairlut_quad t = hairlut_quad_all(found.row.t);
+        const int mirrored = a->columns - 2 - found.cell, high = mirrored < found.cell, k = high ? mirrored : found.cell;
+        const hairlut_cell cell = hairlut_axis_cell(a, found.row.j, t, k, high);
+        width[i] = fabsf(hairlut_axis_cell(a, found.row.j, t, k + 1, high).x0 - cell.x0);
     }
 }

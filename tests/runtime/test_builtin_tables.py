@@ -1,6 +1,11 @@
-"""runtime/src/builtin_tables.c, committed so that a C build needs no Python, is what luts/ exports to."""
+"""Tables as C source: runtime/src/builtin_tables.c, committed so that a C build needs no Python, is what
+luts/ exports to, and what is exported is what the loader makes of the textures."""
 
-from runtime.c_library import MODELS, ROOT, RUNTIME, run, tool
+import ctypes
+import os
+
+import pytest
+from runtime.c_library import BUILD, FLAGS, MODELS, ROOT, RUNTIME, Model, load, loops, run, tool
 
 
 def test_exporting_the_tables_again_gives_the_same_bytes(tmp_path):
@@ -10,3 +15,34 @@ def test_exporting_the_tables_again_gives_the_same_bytes(tmp_path):
     assert out.read_bytes() == (RUNTIME / "src" / "builtin_tables.c").read_bytes(), (
         f"out of date: hairlut export {' '.join(directories)} --to c --out runtime/src/builtin_tables.c"
     )
+
+
+def exported(directory, name: str) -> ctypes.CDLL:
+    """A library of the tables of a directory alone, as C source."""
+    folder = BUILD / "tests" / f"exported-{name}"
+    folder.mkdir(parents=True, exist_ok=True)
+    run(tool("hairlut"), "export", directory, "--to", "c", "--out", folder / "tables.c")
+    (folder / "first.c").write_text(
+        '#include "internal.h"\nconst hairlut_model *first(void);\n'
+        "const hairlut_model *first(void)\n{\n    return &hairlut_builtin_entries[0].model;\n}\n"
+    )
+    include = [f"-I{RUNTIME / 'include'}", f"-I{RUNTIME / 'src'}"]
+    sources = folder / "tables.c", folder / "first.c"
+    run(os.environ.get("CC", "cc"), *FLAGS, "-fPIC", "-shared", "-Wl,-Bsymbolic", *include, *sources,
+        "-o", folder / "tables.so")  # fmt: skip
+    library = ctypes.CDLL(str(folder / "tables.so"))
+    library.first.restype = ctypes.c_void_p
+    return library
+
+
+@pytest.mark.usefixtures("loader")
+@pytest.mark.parametrize("width", [5, 73, 74, 300, 600])
+def test_exported_tables_are_those_that_the_loader_builds(width, tmp_path):
+    """Of widths that are searched in small groups, in large ones, and by halving before (73 is the last small
+    one; the blocks of 300 and 600 are 32 and 64 cells)."""
+    design = "--size", f"{width}x3", "--warp", "octaves e=0.0009765625"
+    run(tool("hairlut"), "bake", "--model", "fitted", *design, "--out", tmp_path)
+    library = exported(tmp_path / "fitted", str(width))
+    compiled, loaded = Model(library.first(), "exported", owned=False), load(tmp_path / "fitted")
+    assert loops().same_tables(compiled.pointer, loaded.pointer)
+    assert not loops().same_tables(compiled.pointer, load(ROOT / "luts" / "fitted").pointer)

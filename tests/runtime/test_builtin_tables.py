@@ -28,7 +28,7 @@ def exported(directory, name: str) -> ctypes.CDLL:
     )
     include = [f"-I{RUNTIME / 'include'}", f"-I{RUNTIME / 'src'}"]
     sources = folder / "tables.c", folder / "first.c"
-    run(os.environ.get("CC", "cc"), *FLAGS, "-fPIC", "-shared", "-Wl,-Bsymbolic", *include, *sources,
+    run(os.environ.get("CC", "cc"), *FLAGS, "-fPIC", "-shared", *include, *sources,
         "-o", folder / "tables.so")  # fmt: skip
     library = ctypes.CDLL(str(folder / "tables.so"))
     library.first.restype = ctypes.c_void_p

@@ -119,8 +119,16 @@ static inline int hairlut_count(const float *group, const float *above, float t,
     return hairlut_tally_sum(tally);
 }
 
+/* hairlut_count of a table's group */
+HAIRLUT_INLINE int hairlut_axis_count(const hairlut_axis *axis, const float *group, float t, float x)
+{
+    if (HAIRLUT_IS_SMALL(axis->columns))
+        return HAIRLUT_COUNT(group, group + HAIRLUT_SMALL_GROUP, t, x, HAIRLUT_SMALL_GROUP);
+    return HAIRLUT_COUNT(group, group + axis->stride, t, x, HAIRLUT_GROUP);
+}
+
 /* Halves a block of n cells, n a power of two, until the part in which x lies is a group's: its first cell. Not for small
- * tables. */
+ * tables, whose blocks are groups. */
 static inline int hairlut_halve(const float *groups, int stride, float t, float x, int n)
 {
     int first = 0;
@@ -149,28 +157,19 @@ typedef struct hairlut_query {
 HAIRLUT_INLINE hairlut_query hairlut_axis_ask(const hairlut_axis *axis, float theta_r, float x)
 {
     hairlut_query query = {hairlut_axis_row(axis, theta_r), hairlut_axis_inside(axis, x), 0};
-    const float t = query.row.t, *group = axis->rows + (ptrdiff_t)query.row.j * axis->stride;
-    if (HAIRLUT_IS_SMALL(axis->columns))
-        query.first = HAIRLUT_SMALL_GROUP * HAIRLUT_COUNT(group, group + HAIRLUT_SMALL_GROUP, t, query.x, HAIRLUT_SMALL_GROUP);
-    else
-        query.first = axis->step * HAIRLUT_COUNT(group, group + axis->stride, t, query.x, HAIRLUT_GROUP);
+    const float *group = axis->rows + (ptrdiff_t)query.row.j * axis->stride;
+    query.first = axis->step * hairlut_axis_count(axis, group, query.row.t, query.x);
     return query;
 }
 
 /* The rest of it: the cell whose blended texels enclose x. */
 HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_axis *axis, hairlut_query query)
 {
-    const float t = query.row.t;
-    const float *group = axis->rows + (ptrdiff_t)query.row.j * axis->stride + HAIRLUT_LINE; /* of the row's first cell */
+    const float t = query.row.t, *groups = axis->rows + (ptrdiff_t)query.row.j * axis->stride + HAIRLUT_LINE;
     hairlut_found found = {query.row, query.first};
-    if (HAIRLUT_IS_SMALL(axis->columns)) {
-        group += HAIRLUT_SPREAD(axis->columns) * found.cell;
-        found.cell += HAIRLUT_COUNT(group, group + HAIRLUT_SMALL_GROUP, t, query.x, HAIRLUT_SMALL_GROUP);
-    } else {
-        found.cell += hairlut_halve(group + found.cell, axis->stride, t, query.x, axis->step);
-        group += found.cell;
-        found.cell += HAIRLUT_COUNT(group, group + axis->stride, t, query.x, HAIRLUT_GROUP);
-    }
+    if (!HAIRLUT_IS_SMALL(axis->columns))
+        found.cell += hairlut_halve(groups + found.cell, axis->stride, t, query.x, axis->step);
+    found.cell += hairlut_axis_count(axis, groups + HAIRLUT_SPREAD(axis->columns) * found.cell, t, query.x);
     return found;
 }
 
@@ -188,11 +187,18 @@ static inline float hairlut_cell_slope(const hairlut_cell *cell, float x)
     return sqrtf(hairlut_max(square - 4.0f * cell->c * (x - cell->x0), hairlut_least_square * square));
 }
 
-/* The cell that look_up found, as stored: from the nearer end of the row. *high gets whether that is the high end. */
+/* A cell counted from the nearer end of a row. *high gets whether that is the high end. */
+static inline int hairlut_axis_nearer(const hairlut_axis *axis, int cell, int *high)
+{
+    const int mirrored = axis->columns - 2 - cell, i = cell < mirrored ? cell : mirrored;
+    *high = i != cell;
+    return i;
+}
+
+/* The cell that look_up found, as stored: from the nearer end of the row. */
 static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_found found, int *high)
 {
-    const int mirrored = axis->columns - 2 - found.cell, i = found.cell < mirrored ? found.cell : mirrored;
-    *high = i != found.cell;
+    const int i = hairlut_axis_nearer(axis, found.cell, high);
     return hairlut_axis_cell(axis, found.row.j, hairlut_quad_all(found.row.t), i, *high);
 }
 

@@ -146,12 +146,12 @@ HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t 
 /* hairlut_axis_ask with groups of `size`: the first cell of the block, and the offset of its first group */
 HAIRLUT_INLINE void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int size)
 {
-    const int step = axis->step;
+    const int step = axis->step, floats = HAIRLUT_LINE / size * step; /* of a block */
     count(axis, axis->rows, n, q, size, q->cell);
     for (size_t s = 0; s < n; s += LANES) {
-        const whole first = imul(iload(q->cell + s), iall(step));
-        istore(q->cell + s, first);
-        istore(q->at + s, iadd(iload(q->at + s), size == HAIRLUT_SMALL_GROUP ? iadd(first, first) : first));
+        const whole block = iload(q->cell + s);
+        istore(q->cell + s, imul(block, iall(step)));
+        istore(q->at + s, iadd(iload(q->at + s), imul(block, iall(floats))));
     }
 }
 

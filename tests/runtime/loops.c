@@ -85,7 +85,8 @@ LOOP void axis_cell_width(const hairlut_model *model, int axis, size_t n, const 
         const hairlut_axis *a = axis_of(model, axis);
         const hairlut_found found = hairlut_axis_look_up(a, theta_r[i], x[i]);
         const hairlut_quad t = hairlut_quad_all(found.row.t);
-        const int mirrored = a->columns - 2 - found.cell, high = mirrored < found.cell, k = high ? mirrored : found.cell;
+        int high;
+        const int k = hairlut_axis_nearer(a, found.cell, &high);
         const hairlut_cell cell = hairlut_axis_cell(a, found.row.j, t, k, high);
         width[i] = fabsf(hairlut_axis_cell(a, found.row.j, t, k + 1, high).x0 - cell.x0);
     }
@@ -94,15 +95,16 @@ LOOP void axis_cell_width(const hairlut_model *model, int axis, size_t n, const 
 static int same_axis(const hairlut_axis *a, const hairlut_axis *b)
 {
     const size_t rows = (size_t)HAIRLUT_STORED(a->columns, a->height), cells = (size_t)HAIRLUT_CELLS(a->columns, a->height);
-    return a->columns == b->columns && a->height == b->height && a->row_origin == b->row_origin && a->row_scale == b->row_scale &&
-           a->warp == b->warp && a->e == b->e && a->scale == b->scale && a->origin == b->origin && a->low == b->low &&
-           a->high == b->high && memcmp(a->rows, b->rows, rows * sizeof(float)) == 0 &&
-           memcmp(a->ends[0], b->ends[0], cells * sizeof(float)) == 0;
+    return a->columns == b->columns && a->height == b->height && a->row_origin == b->row_origin
+           && a->row_scale == b->row_scale && a->warp == b->warp && a->e == b->e && a->scale == b->scale
+           && a->origin == b->origin && a->low == b->low && a->high == b->high
+           && memcmp(a->rows, b->rows, rows * sizeof(float)) == 0
+           && memcmp(a->ends[0], b->ends[0], cells * sizeof(float)) == 0;
 }
 
 /* Whether two models hold the same tables, bit for bit. */
 LOOP int same_tables(const hairlut_model *a, const hairlut_model *b)
 {
-    return same_axis(&a->direct_theta, &b->direct_theta) && same_axis(&a->direct_phi, &b->direct_phi) &&
-           same_axis(&a->multiple_theta, &b->multiple_theta) && a->azimuth == b->azimuth;
+    return same_axis(&a->direct_theta, &b->direct_theta) && same_axis(&a->direct_phi, &b->direct_phi)
+           && same_axis(&a->multiple_theta, &b->multiple_theta) && a->azimuth == b->azimuth;
 }

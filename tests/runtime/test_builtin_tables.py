@@ -5,7 +5,8 @@ import ctypes
 import os
 
 import pytest
-from runtime.c_library import BUILD, FLAGS, MODELS, ROOT, RUNTIME, Model, load, loops, run, tool
+from runtime.by_hand import INCLUDE, SOURCE
+from runtime.c_library import FLAGS, MODELS, ROOT, RUNTIME, Model, load, loops, run, tool
 
 
 def test_exporting_the_tables_again_gives_the_same_bytes(tmp_path):
@@ -17,22 +18,15 @@ def test_exporting_the_tables_again_gives_the_same_bytes(tmp_path):
     )
 
 
-def exported(directory, name: str) -> ctypes.CDLL:
-    """A library of the tables of a directory alone, as C source."""
-    folder = BUILD / "tests" / f"exported-{name}"
-    folder.mkdir(parents=True, exist_ok=True)
-    run(tool("hairlut"), "export", directory, "--to", "c", "--out", folder / "tables.c")
-    (folder / "first.c").write_text(
-        '#include "internal.h"\nconst hairlut_model *first(void);\n'
-        "const hairlut_model *first(void)\n{\n    return &hairlut_builtin_entries[0].model;\n}\n"
-    )
-    include = [f"-I{RUNTIME / 'include'}", f"-I{RUNTIME / 'src'}"]
-    sources = folder / "tables.c", folder / "first.c"
-    run(os.environ.get("CC", "cc"), *FLAGS, "-fPIC", "-shared", *include, *sources,
-        "-o", folder / "tables.so")  # fmt: skip
-    library = ctypes.CDLL(str(folder / "tables.so"))
-    library.first.restype = ctypes.c_void_p
-    return library
+def exported(directory) -> Model:
+    """The model of a directory, compiled in: builtin.c with what the directory exports to as its tables."""
+    source, library = directory / "tables.c", directory / "tables.so"
+    run(tool("hairlut"), "export", directory, "--to", "c", "--out", source)
+    run(os.environ.get("CC", "cc"), *FLAGS, "-fPIC", "-shared", *INCLUDE, SOURCE / "builtin.c", source,
+        "-o", library)  # fmt: skip
+    builtin = ctypes.CDLL(str(library)).hairlut_builtin
+    builtin.restype, builtin.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
+    return Model(builtin(directory.name.encode()), "exported", owned=False)
 
 
 @pytest.mark.usefixtures("loader")
@@ -42,7 +36,6 @@ def test_exported_tables_are_those_that_the_loader_builds(width, tmp_path):
     one; the blocks of 300 and 600 are 32 and 64 cells)."""
     design = "--size", f"{width}x3", "--warp", "octaves e=0.0009765625"
     run(tool("hairlut"), "bake", "--model", "fitted", *design, "--out", tmp_path)
-    library = exported(tmp_path / "fitted", str(width))
-    compiled, loaded = Model(library.first(), "exported", owned=False), load(tmp_path / "fitted")
+    compiled, loaded = exported(tmp_path / "fitted"), load(tmp_path / "fitted")
     assert loops().same_tables(compiled.pointer, loaded.pointer)
     assert not loops().same_tables(compiled.pointer, load(ROOT / "luts" / "fitted").pointer)

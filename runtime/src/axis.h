@@ -16,10 +16,6 @@
 #include "internal.h"
 #include "quad.h"
 
-#ifndef HAIRLUT_COUNT
-#define HAIRLUT_COUNT hairlut_count /* a kernel with wider vectors defines its own, for n of 8 and 16 */
-#endif
-
 static const float hairlut_least_square = 6.5e-4f; /* below (0.05 / 1.95)^2 */
 
 /* Where theta_r lies: the row below it, and the weight of the row above, in [0,1). */
@@ -123,8 +119,8 @@ static inline int hairlut_count(const float *group, const float *above, float t,
 HAIRLUT_INLINE int hairlut_axis_count(const hairlut_axis *axis, const float *group, float t, float x)
 {
     if (HAIRLUT_IS_SMALL(axis->columns))
-        return HAIRLUT_COUNT(group, group + HAIRLUT_SMALL_GROUP, t, x, HAIRLUT_SMALL_GROUP);
-    return HAIRLUT_COUNT(group, group + axis->stride, t, x, HAIRLUT_GROUP);
+        return hairlut_count(group, group + HAIRLUT_SMALL_GROUP, t, x, HAIRLUT_SMALL_GROUP);
+    return hairlut_count(group, group + axis->stride, t, x, HAIRLUT_GROUP);
 }
 
 /* Halves a block of n cells, n a power of two, until the part in which x lies is a group's: its first cell. Not for small

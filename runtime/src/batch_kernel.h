@@ -8,8 +8,9 @@
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
- *   HAIRLUT_COUNT(group, above, t, x, n)  may be defined: hairlut_count with wider vectors; n is 8 or 16
+ *   HAIRLUT_COUNT(group, above, t, x, n)  may be defined: hairlut_count with wider vectors
  *   HAIRLUT_COUNTS(groups, above, at, t, x, n)  may be defined: lane l has the count of groups and above + at[l], t[l], x[l]
+ *   HAIRLUT_CELLS_BY_AVX2  may be defined: then there is no gather4, and n of a count is 16
  *
  * Every formula repeats axis.h, angle.h and lobes.h operation by operation, without fused multiply-add: that makes the
  * results equal bit for bit. The work on a block is done in passes, each short enough that a processor has several vectors
@@ -19,40 +20,11 @@
 #ifndef HAIRLUT_BATCH_KERNEL_H
 #define HAIRLUT_BATCH_KERNEL_H
 
+#include "batch_cells.h"
 #include "lobes.h"
 
-enum { BLOCK = 256 }; /* samples a pass */
-
-/* Before a loop over single samples: less of it is counting. clang does so by itself. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define HAIRLUT_UNROLLED _Pragma("GCC unroll 4")
-#else
-#define HAIRLUT_UNROLLED
-#endif
-
-/* The samples of a block on an axis. What a pass no longer needs makes room for what it finds: all of it is to stay in the
- * first-level cache, beside the table. */
-typedef struct draws {
-    int at[BLOCK];   /* the offset of the cell */
-    float t[BLOCK];  /* the weight of the row above; from fetch on: the blended cell's c */
-    float m[BLOCK];  /* of hairlut_knot; from fetch on: the distance d from the cell's knot */
-    float x0[BLOCK]; /* of the blended cell; from store_samples on: the angle as it was drawn */
-    float a[BLOCK];  /* of the blended cell; from store_samples on: the density */
-} draws;
-
-/* The directions of a block on an axis; here, too, what is found takes the place of what is no longer needed. */
-typedef struct queries {
-    int j[BLOCK];    /* the row */
-    int cell[BLOCK]; /* as far as it is found, counted from the low end */
-    int at[BLOCK];   /* where to read on: an offset among the rows, then among the cells */
-    float t[BLOCK];  /* the weight of the row above; from find_cells on: the blended cell's c */
-    float x[BLOCK];  /* the angle; from find_cells on: less the blended cell's x0 */
-    float a[BLOCK];  /* of the blended cell */
-} queries;
-
-typedef struct cells {
-    real x0, a, c, u0;
-} cells;
+/* Sixteen lanes come with twice the registers: there, solid angles are found in the pass that has the angles. */
+enum { SOLID_ANGLES_APART = LANES < 16 };
 
 static inline real clamp(real x, real low, real high)
 {
@@ -67,14 +39,6 @@ static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
     const whole j = truncated(r);
     *t = sub(r, converted(j));
     return j;
-}
-
-/* The offset of cell i, counted from an end, of row j. */
-static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
-{
-    const whole cell = imul(i, iall(axis->pitch));
-    const whole half = iwhere(high, iall((int)(axis->ends[1] - axis->ends[0])));
-    return iadd(iadd(cell, half), imul(j, iall(HAIRLUT_CELL)));
 }
 
 /* hairlut_axis_knot, but for the offset: the cell, counted from the nearer end */
@@ -97,29 +61,6 @@ static inline void place(const hairlut_axis *axis, size_t n, const float *theta_
     }
 }
 
-/* hairlut_axis_cell */
-static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
-{
-    real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
-    gather4(axis->ends[0], at, p);
-    gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
-    const real s = sub(all(1.0f), t);
-    const cells cell = {add(mul(s, p[0]), mul(t, q[0])), add(mul(s, p[1]), mul(t, q[1])), add(mul(s, p[2]), mul(t, q[2])), p[3]};
-    return cell;
-}
-
-/* From place's results: the blended cells, and the distances from their knots. */
-static inline void fetch(const hairlut_axis *axis, size_t n, draws *q)
-{
-    for (size_t s = 0; s < n; s += LANES) {
-        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
-        store(q->t + s, cell.c);
-        store(q->m + s, sub(load(q->m + s), cell.u0));
-        store(q->x0 + s, cell.x0);
-        store(q->a + s, cell.a);
-    }
-}
-
 /* hairlut_axis_sample, not moved into the domain, of samples s .. s+LANES-1 that were placed and fetched */
 static inline real draw(const draws *q, size_t s, real *slope)
 {
@@ -127,78 +68,6 @@ static inline real draw(const draws *q, size_t s, real *slope)
     const real bend = mul(load(q->t + s), d), mean_slope = sub(load(q->a + s), bend);
     *slope = magnitude(sub(mean_slope, bend));
     return add(load(q->x0 + s), mul(d, mean_slope));
-}
-
-/* hairlut_count, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0 */
-HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t n, const queries *q, int size, int *counts)
-{
-    const float *above = groups + (size == HAIRLUT_SMALL_GROUP ? HAIRLUT_SMALL_GROUP : axis->stride);
-#ifdef HAIRLUT_COUNTS
-    for (size_t s = 0; s < n; s += LANES)
-        istore(counts + s, HAIRLUT_COUNTS(groups, above, q->at + s, q->t + s, q->x + s, size));
-#else
-    HAIRLUT_UNROLLED
-    for (size_t k = 0; k < n; ++k)
-        counts[k] = HAIRLUT_COUNT(groups + q->at[k], above + q->at[k], q->t[k], q->x[k], size);
-#endif
-}
-
-/* hairlut_axis_ask with groups of `size`: the first cell of the block, and the offset of its first group */
-HAIRLUT_INLINE void find_blocks(const hairlut_axis *axis, size_t n, queries *q, int size)
-{
-    const int step = axis->step, floats = HAIRLUT_LINE / size * step; /* of a block */
-    count(axis, axis->rows, n, q, size, q->cell);
-    for (size_t s = 0; s < n; s += LANES) {
-        const whole block = iload(q->cell + s);
-        istore(q->cell + s, imul(block, iall(step)));
-        istore(q->at + s, iadd(iload(q->at + s), imul(block, iall(floats))));
-    }
-}
-
-/* hairlut_halve */
-static inline void halve_blocks(const hairlut_axis *axis, size_t n, queries *q)
-{
-    const float *groups = axis->rows + HAIRLUT_LINE;
-    for (size_t k = 0; axis->step > HAIRLUT_GROUP && k < n; ++k) {
-        const int halved = hairlut_halve(groups + q->at[k], axis->stride, q->t[k], q->x[k], axis->step);
-        q->cell[k] += halved;
-        q->at[k] += halved;
-    }
-}
-
-/* hairlut_axis_found, but for the cell itself */
-static inline void turn_to_nearer_end(const hairlut_axis *axis, whole found, queries *q, size_t s)
-{
-    const whole mirrored = isub(iall(axis->columns - 2), found);
-    istore(q->at + s, cell_offset(axis, iload(q->j + s), ismaller(found, mirrored), igreater(found, mirrored)));
-}
-
-/* hairlut_axis_find from the count on, and where to read the cell. */
-HAIRLUT_INLINE void find_in_groups(const hairlut_axis *axis, size_t n, queries *q, int size)
-{
-    int counts[BLOCK];
-    count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
-    for (size_t s = 0; s < n; s += LANES)
-        turn_to_nearer_end(axis, iadd(iload(q->cell + s), iload(counts + s)), q, s);
-}
-
-/* hairlut_axis_look_up and hairlut_axis_found */
-static inline void find_cells(const hairlut_axis *axis, size_t n, queries *q)
-{
-    if (HAIRLUT_IS_SMALL(axis->columns)) {
-        find_blocks(axis, n, q, HAIRLUT_SMALL_GROUP);
-        find_in_groups(axis, n, q, HAIRLUT_SMALL_GROUP);
-    } else {
-        find_blocks(axis, n, q, HAIRLUT_GROUP);
-        halve_blocks(axis, n, q);
-        find_in_groups(axis, n, q, HAIRLUT_GROUP);
-    }
-    for (size_t s = 0; s < n; s += LANES) {
-        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
-        store(q->t + s, cell.c);
-        store(q->x + s, sub(load(q->x + s), cell.x0));
-        store(q->a + s, cell.a);
-    }
 }
 
 /* hairlut_cell_slope, of angles s .. s+LANES-1 whose cells are found */
@@ -278,8 +147,12 @@ static inline mask known(real theta_r, real phi_r, real a, real b)
 static inline void store_samples(const hairlut_axis *axis, hairlut_samples out, size_t s, real theta_i, real phi_i, real pdf,
                                  draws *q)
 {
-    store(q->x0 + s, theta_i);
-    store(q->a + s, pdf);
+    if (SOLID_ANGLES_APART) {
+        store(q->x0 + s, theta_i);
+        store(q->a + s, pdf);
+    } else if (out.pdf_solid_angle) {
+        store(out.pdf_solid_angle + s, over(pdf, cosine(theta_i)));
+    }
     store(out.theta_i + s, clamp(theta_i, all(axis->low), all(axis->high)));
     store(out.phi_i + s, phi_i);
     if (out.pdf_angle)
@@ -289,7 +162,7 @@ static inline void store_samples(const hairlut_axis *axis, hairlut_samples out, 
 /* hairlut_per_steradian, after store_samples */
 static inline void store_solid_angles(size_t n, const draws *q, float *pdf_solid_angle)
 {
-    for (size_t s = 0; pdf_solid_angle && s < n; s += LANES)
+    for (size_t s = 0; SOLID_ANGLES_APART && pdf_solid_angle && s < n; s += LANES)
         store(pdf_solid_angle + s, over(load(q->a + s), cosine(load(q->x0 + s))));
 }
 

@@ -1,39 +1,54 @@
-/* Eight lanes of AVX-512 for batch_kernel.h, which says what each operation must do. Eight and not sixteen: most of the work
- * is loading and sorting cells, for which vectors of 256 bits have three ports and those of 512 bits two. */
+/* Sixteen lanes of AVX-512 for batch_kernel.h, which says what each operation must do. What sorts the loads of single samples
+ * is AVX2's: there, eight lanes are as fast. */
 #ifndef HAIRLUT_SIMD_AVX512_H
 #define HAIRLUT_SIMD_AVX512_H
 
+#include <immintrin.h>
+
 #include "internal.h"
-#include "simd_256.h"
 
-typedef __mmask8 mask;
+typedef __m512 real;
+typedef __m512i whole;
+typedef __mmask16 mask;
+enum { LANES = 16 };
 
-static inline mask greater(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_GT_OQ); }
-static inline mask at_least(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_GE_OQ); }
-static inline mask numbers(real a, real b) { return _mm256_cmp_ps_mask(a, b, _CMP_ORD_Q); }
+static inline real load(const float *p) { return _mm512_loadu_ps(p); }
+static inline void store(float *p, real a) { _mm512_storeu_ps(p, a); }
+static inline real all(float a) { return _mm512_set1_ps(a); }
+static inline real add(real a, real b) { return _mm512_add_ps(a, b); }
+static inline real sub(real a, real b) { return _mm512_sub_ps(a, b); }
+static inline real mul(real a, real b) { return _mm512_mul_ps(a, b); }
+static inline real over(real a, real b) { return _mm512_div_ps(a, b); }
+static inline real root(real a) { return _mm512_sqrt_ps(a); }
+static inline real smaller(real a, real b) { return _mm512_min_ps(a, b); }
+static inline real larger(real a, real b) { return _mm512_max_ps(a, b); }
+static inline real magnitude(real a) { return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a); }
+static inline mask greater(real a, real b) { return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ); }
+static inline mask at_least(real a, real b) { return _mm512_cmp_ps_mask(a, b, _CMP_GE_OQ); }
+static inline mask numbers(real a, real b) { return _mm512_cmp_ps_mask(a, b, _CMP_ORD_Q); }
 static inline mask both(mask a, mask b) { return (mask)(a & b); }
-static inline int every(mask m) { return m == 0xff; }
-static inline real choose(mask m, real a, real b) { return _mm256_mask_blend_ps(m, b, a); }
-static inline mask igreater(whole a, whole b) { return _mm256_cmpgt_epi32_mask(a, b); }
-static inline whole iwhere(mask m, whole a) { return _mm256_maskz_mov_epi32(m, a); }
+static inline int every(mask m) { return m == 0xffff; }
+static inline real choose(mask m, real a, real b) { return _mm512_mask_blend_ps(m, b, a); }
 
-#define HAIRLUT_COUNT count_at_most
-static inline unsigned below8(const float *group, const float *changes, float t, float x)
-{
-    const real blend = add(load(group), mul(all(t), load(changes)));
-    return _mm256_cmp_ps_mask(blend, all(x), _CMP_LE_OQ);
-}
+static inline whole iload(const int *p) { return _mm512_loadu_si512(p); }
+static inline void istore(int *p, whole a) { _mm512_storeu_si512(p, a); }
+static inline whole iall(int a) { return _mm512_set1_epi32(a); }
+static inline whole iadd(whole a, whole b) { return _mm512_add_epi32(a, b); }
+static inline whole isub(whole a, whole b) { return _mm512_sub_epi32(a, b); }
+static inline whole ismaller(whole a, whole b) { return _mm512_min_epi32(a, b); }
+static inline whole imul(whole a, whole b) { return _mm512_madd_epi16(a, b); }
+static inline mask igreater(whole a, whole b) { return _mm512_cmpgt_epi32_mask(a, b); }
+static inline whole iwhere(mask m, whole a) { return _mm512_maskz_mov_epi32(m, a); }
+static inline whole truncated(real a) { return _mm512_cvttps_epi32(a); }
+static inline real shifted(real a) { return _mm512_castsi512_ps(_mm512_srli_epi32(_mm512_castps_si512(a), 2)); }
+static inline real converted(whole a) { return _mm512_cvtepi32_ps(a); }
 
-static inline unsigned below16(const float *group, const float *above, float t, float x)
+#define HAIRLUT_CELLS_BY_AVX2
+#define HAIRLUT_COUNT(group, above, t, x, n) count16(group, above, t, x)
+static inline int count16(const float *group, const float *above, float t, float x)
 {
-    const __m512 from = _mm512_loadu_ps(group), change = _mm512_sub_ps(_mm512_loadu_ps(above), from);
-    const __m512 blend = _mm512_add_ps(from, _mm512_mul_ps(_mm512_set1_ps(t), change));
-    return _mm512_cmp_ps_mask(blend, _mm512_set1_ps(x), _CMP_LE_OQ);
-}
-
-HAIRLUT_INLINE int count_at_most(const float *group, const float *above, float t, float x, int n)
-{
-    return _mm_popcnt_u32(n == HAIRLUT_SMALL_GROUP ? below8(group, above, t, x) : below16(group, above, t, x));
+    const real from = load(group), blend = add(from, mul(all(t), sub(load(above), from)));
+    return _mm_popcnt_u32(_mm512_cmp_ps_mask(blend, all(x), _CMP_LE_OQ));
 }
 
 #endif

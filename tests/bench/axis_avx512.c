@@ -3,4 +3,4 @@
 
 #include "axis_batch.h"
 
-const axis_kernels axis_avx512 = {"avx512", axis_sample, axis_pdf, floor_index, floor_angles};
+const axis_kernels axis_avx512 = {"avx512", axis_sample, axis_pdf, NULL, NULL};

@@ -145,6 +145,12 @@ void add_floor(const axis_kernels &kernels, const std::string &name, const hairl
     });
 }
 
+// The widest kernels that have a floor: those in AVX-512 fetch their cells with AVX2's.
+const axis_kernels &widest_floor(const std::vector<const axis_kernels *> &kernels)
+{
+    return **std::find_if(kernels.rbegin(), kernels.rend(), [](const axis_kernels *some) { return some->floor_index; });
+}
+
 void add_tables(const std::string &model_name, const hairlut_model &model)
 {
     const auto vectors = vector_kernels();
@@ -158,7 +164,7 @@ void add_tables(const std::string &model_name, const hairlut_model &model)
         if (!vectors.empty()) {
             add_axis("batch", *vectors.back(), name, axis);
             add_uniform("batch", *vectors.back(), name, axis);
-            add_floor(*vectors.back(), name, axis);
+            add_floor(widest_floor(vectors), name, axis);
         }
     }
 }

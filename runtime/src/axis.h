@@ -88,7 +88,7 @@ HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, h
     const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(q));
     float part[3];
     hairlut_quad_first3(hairlut_quad_add(below, above), part);
-    const hairlut_cell cell = {part[0], part[1], part[2], hairlut_quad_last(hairlut_quad_load(p))};
+    const hairlut_cell cell = {part[0], part[1], part[2], p[3]};
     return cell;
 }
 

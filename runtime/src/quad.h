@@ -50,13 +50,22 @@ static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
     lane[2] = _mm_cvtss_f32(_mm_movehl_ps(a, a));
 }
 
-static inline float hairlut_quad_last(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 3)); }
+/* x, the other lanes not used: gcc would clear them all the same, through an integer register. */
+static inline hairlut_quad hairlut_quad_of(float x)
+{
+#if defined(__GNUC__) && !defined(__clang__)
+    hairlut_quad a;
+    __asm__("" : "=x"(a) : "0"(x));
+    return a;
+#else
+    return _mm_set_ss(x);
+#endif
+}
 
-/* The float whose bits are those of s > 0 shifted right by two. In all lanes: to clear the others, gcc would send s through
- * an integer register. */
+/* The float whose bits are those of s > 0 shifted right by two. */
 static inline float hairlut_shifted(float s)
 {
-    return _mm_cvtss_f32(_mm_castsi128_ps(_mm_srli_epi32(_mm_castps_si128(_mm_set1_ps(s)), 2)));
+    return _mm_cvtss_f32(_mm_castsi128_ps(_mm_srli_epi32(_mm_castps_si128(hairlut_quad_of(s)), 2)));
 }
 
 typedef __m128i hairlut_tally; /* four counters */
@@ -96,8 +105,6 @@ static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
     lane[1] = vgetq_lane_f32(a, 1);
     lane[2] = vgetq_lane_f32(a, 2);
 }
-
-static inline float hairlut_quad_last(hairlut_quad a) { return vgetq_lane_f32(a, 3); }
 
 static inline float hairlut_shifted(float s)
 {
@@ -164,8 +171,6 @@ static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
     for (int l = 0; l < 3; ++l)
         lane[l] = a.lane[l];
 }
-
-static inline float hairlut_quad_last(hairlut_quad a) { return a.lane[3]; }
 
 static inline float hairlut_shifted(float s)
 {

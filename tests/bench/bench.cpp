@@ -218,10 +218,11 @@ void add_hybrid(const std::string &how, Hybrid rival, const std::string &name, r
 // Without AVX-512, a rival of that width is the 256-bit one by another name.
 bool has_avx512()
 {
-    for (int level = 1; const hairlut_batch *batch = hairlut_batch_level(level); ++level)
-        if (std::strcmp(batch->name, "avx512") == 0)
-            return true;
+#if defined(__x86_64__) || defined(__i386__)
+    return __builtin_cpu_supports("avx512f");
+#else
     return false;
+#endif
 }
 
 void add_rivals()

@@ -58,7 +58,9 @@ def test_widest_set_of_this_processor_is_offered(reference):
     if "avx2" not in flags:
         pytest.skip("this processor has no AVX2: its kernels are not run")
     assert "avx2" in reference
-    assert ("avx512" in reference) == all(f"avx512{part}" in flags for part in ("f", "bw", "dq", "vl"))
+    assert ("avx512" in reference) == all(
+        f"avx512{part}" in flags for part in ("f", "bw", "dq", "vl", "_vbmi2")
+    )
 
 
 @pytest.mark.parametrize("flags", [["-O3"], ["-O2", "-DHAIRLUT_PLAIN_QUAD"], ["-O0"]], ids=" ".join)

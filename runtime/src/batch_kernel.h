@@ -49,15 +49,19 @@ static inline whole find_knot(const hairlut_axis *axis, real u, real *m)
     return truncated(sub(mul(y, all(axis->scale)), all(axis->origin)));
 }
 
-static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, draws *q)
+/* *holds gets 1, or 0 where theta_r or u is not a number. A later pass had better not read those again: arrays that begin at
+ * the same offset in a page, as big ones do, push each other out of the first-level cache. */
+static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, draws *q, float *holds)
 {
     for (size_t s = 0; s < n; s += LANES) {
         real t, m;
-        const real number = load(u + s);
-        const whole j = find_row(axis, load(theta_r + s), &t), i = find_knot(axis, number, &m);
+        const real angle = load(theta_r + s), number = load(u + s);
+        const whole j = find_row(axis, angle, &t), i = find_knot(axis, number, &m);
         istore(q->at + s, cell_offset(axis, j, i, greater(number, all(0.5f))));
         store(q->t + s, t);
         store(q->m + s, m);
+        if (holds)
+            store(holds + s, choose(numbers(angle, number), all(1.0f), all(0.0f)));
     }
 }
 
@@ -138,10 +142,10 @@ static inline real cosine(real theta)
     return add(z, mul(mul(z, w), add(low, mul(mul(w, w), high))));
 }
 
-/* hairlut_known */
-static inline mask known(real theta_r, real phi_r, real a, real b)
+/* What hairlut_known asks of phi_r and b; of theta_r and u, place does. */
+static inline mask known_phi(real phi_r, real b)
 {
-    return both(numbers(theta_r, a), numbers(b, sub(phi_r, phi_r)));
+    return numbers(b, sub(phi_r, phi_r));
 }
 
 static inline void store_samples(const hairlut_axis *axis, hairlut_samples out, size_t s, real theta_i, real phi_i, real pdf,
@@ -170,19 +174,20 @@ static inline void sample_direct_block(const hairlut_model *shared, size_t n, co
 {
     const hairlut_model copy = *shared, *model = &copy; /* no output can change it: what a loop uses stays in registers */
     draws theta, phi;
-    place(&model->direct_theta, n, in[0], in[2], &theta);
-    place(&model->direct_phi, n, in[0], in[3], &phi);
+    float holds[BLOCK];
+    place(&model->direct_theta, n, in[0], in[2], &theta, holds);
+    place(&model->direct_phi, n, in[0], in[3], &phi, NULL);
     fetch(&model->direct_theta, n, &theta);
     fetch(&model->direct_phi, n, &phi);
     for (size_t s = 0; s < n; s += LANES) {
         const real phi_r = load(in[1] + s);
-        const mask valid = known(load(in[0] + s), phi_r, load(in[2] + s), load(in[3] + s));
+        const mask valid = known_phi(phi_r, load(in[3] + s));
         real slope_theta, slope_phi;
         const real theta_i = draw(&theta, s, &slope_theta), relative = draw(&phi, s, &slope_phi);
         const real r = wrap(phi_r, -hairlut_pi);
         const real phi_i = model->azimuth == HAIRLUT_AZIMUTH_SUM ? sub(relative, r) : add(relative, r);
         store_samples(&model->direct_theta, out, s, theta_i, wrap_down(phi_i, -hairlut_pi),
-                      choose(valid, over(all(1.0f), mul(slope_theta, slope_phi)), all(0.0f)), &theta);
+                      choose(valid, over(load(holds + s), mul(slope_theta, slope_phi)), all(0.0f)), &theta);
     }
     store_solid_angles(n, &theta, out.pdf_solid_angle);
 }
@@ -192,18 +197,19 @@ static inline void sample_multiple_block(const hairlut_model *shared, size_t n, 
 {
     const hairlut_model copy = *shared, *model = &copy;
     draws theta;
-    place(&model->multiple_theta, n, in[0], in[2], &theta);
+    float holds[BLOCK];
+    place(&model->multiple_theta, n, in[0], in[2], &theta, holds);
     fetch(&model->multiple_theta, n, &theta);
     for (size_t s = 0; s < n; s += LANES) {
         const real u_phi = load(in[3] + s);
-        const mask valid = known(load(in[0] + s), load(in[1] + s), load(in[2] + s), u_phi);
+        const mask valid = known_phi(load(in[1] + s), u_phi);
         const real turn = mul(all(hairlut_two_pi), clamp(u_phi, all(0.0f), all(1.0f)));
         const real phi = sub(turn, all(hairlut_pi));
         const real phi_i = choose(greater(all(hairlut_pi), phi), phi, all(-hairlut_pi));
         real slope;
         const real theta_i = draw(&theta, s, &slope);
         store_samples(&model->multiple_theta, out, s, theta_i, phi_i,
-                      choose(valid, over(all(hairlut_inverse_two_pi), slope), all(0.0f)), &theta);
+                      choose(valid, mul(load(holds + s), over(all(hairlut_inverse_two_pi), slope)), all(0.0f)), &theta);
     }
     store_solid_angles(n, &theta, out.pdf_solid_angle);
 }
@@ -218,7 +224,7 @@ static inline real relative_azimuth(const hairlut_model *model, real phi_r, real
 /* The density is 0 where an argument is not a number or an azimuth is infinite. */
 static inline mask known_pdf(real theta_r, real phi_r, real theta_i, real phi_i)
 {
-    return both(known(theta_r, phi_r, theta_i, phi_i), at_least(all(FLT_MAX), magnitude(phi_i)));
+    return both(both(numbers(theta_r, theta_i), known_phi(phi_r, phi_i)), at_least(all(FLT_MAX), magnitude(phi_i)));
 }
 
 static inline void pdf_direct_block(const hairlut_model *model, size_t n, const float *const in[4], float *out)

@@ -9,7 +9,7 @@ static void axis_sample(const hairlut_axis *shared, size_t n, const float *theta
     for (size_t b = 0; b < n; b += BLOCK) {
         const size_t m = n - b < BLOCK ? n - b : BLOCK;
         draws q;
-        place(axis, m, theta_r + b, u + b, &q);
+        place(axis, m, theta_r + b, u + b, &q, NULL);
         fetch(axis, m, &q);
         for (size_t s = 0; s < m; s += LANES) {
             real slope;

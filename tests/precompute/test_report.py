@@ -60,6 +60,13 @@ def test_a_missing_benchmark_program_is_named(tmp_path):
         timing.run(tmp_path / "nothing", tmp_path, ".*")
 
 
+def test_a_processor_is_described_as_far_as_the_benchmark_says():
+    caches = [{"level": 1, "size": 32768}, {"level": 2, "size": 1048576}]
+    told = timing.describe("X", {"kernels": "avx2", "caches": caches})
+    assert told == "X (avx2 kernels, second-level cache of 1024 KiB)"
+    assert timing.describe("X", {"caches": caches[:1]}) == "X"
+
+
 def test_markdown_table():
     assert markdown.table(("a", "b"), [(1, "x")]) == "| a | b |\n| --- | --- |\n| 1 | x |\n"
 

@@ -211,9 +211,10 @@ TEXT = """# Speed against error
 
 One axis of the direct lobe (theta, model `fitted`), an angle with its density, random theta_r and u. All
 times are of one run on one thread, least of {repetitions} repetitions in random order, of processor time, on
-{processor}; compare them with each other, not with another machine. The rivals evaluate the closed form of
-this Gaussian, so their V is 0: that a table can do without a closed form is its reason to be, and this page
-asks what it costs where there is one.
+{processor}.
+Compare them with each other, not with another machine. The rivals evaluate the closed form of this Gaussian,
+so their V is 0: that a table can do without a closed form is its reason to be, and this page asks what it
+costs where there is one.
 """
 
 WARPS = """

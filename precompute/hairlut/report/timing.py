@@ -42,16 +42,26 @@ def run(program: Path, luts: Path, pattern: str) -> Times:
     )
     if done.returncode:
         raise HairlutError(f"{program} failed: {done.stderr.strip().splitlines()[-1:]}")
-    return _times(json.loads(done.stdout)["benchmarks"])
+    document = json.loads(done.stdout)
+    return _times(document["benchmarks"], describe(_processor(), document.get("context", {})))
 
 
-def _times(entries: list[dict]) -> Times:
+def describe(processor: str, context: dict) -> str:
+    """The processor with what decides its times: the kernels that the library chooses on it, its second-level
+    cache; both from the "context" of the benchmark's output, as far as it says."""
+    caches = [cache["size"] for cache in context.get("caches", []) if cache["level"] == 2]
+    told = [f"{context['kernels']} kernels"] if "kernels" in context else []
+    told += [f"second-level cache of {caches[0] // 1024} KiB"] if caches else []
+    return f"{processor} ({', '.join(told)})" if told else processor
+
+
+def _times(entries: list[dict], processor: str) -> Times:
     repeats: dict[str, list[float]] = {}
     for entry in entries:
         if entry.get("run_type", "iteration") == "iteration":
             repeats.setdefault(entry["run_name"], []).append(entry["ns"])
     ns = {name: min(values) for name, values in repeats.items()}
-    return Times(ns, {name: (max(v) - min(v)) / ns[name] for name, v in repeats.items()}, _processor())
+    return Times(ns, {name: (max(v) - min(v)) / ns[name] for name, v in repeats.items()}, processor)
 
 
 def _processor() -> str:

@@ -23,6 +23,14 @@ typedef struct hairlut_batch {
                          const float *theta_i, const float *phi_i, float *pdf_angle);
 } hairlut_batch;
 
+/* Samples from s on */
+static inline hairlut_samples hairlut_samples_from(hairlut_samples out, size_t s)
+{
+    const hairlut_samples rest = {out.theta_i + s, out.phi_i + s, out.pdf_angle ? out.pdf_angle + s : NULL,
+                                  out.pdf_solid_angle ? out.pdf_solid_angle + s : NULL};
+    return rest;
+}
+
 extern const hairlut_batch hairlut_batch_portable;
 #ifdef HAIRLUT_BATCH_X86
 extern const hairlut_batch hairlut_batch_avx2;

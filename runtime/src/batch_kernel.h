@@ -20,6 +20,7 @@
 #ifndef HAIRLUT_BATCH_KERNEL_H
 #define HAIRLUT_BATCH_KERNEL_H
 
+#include "batch_arrays.h"
 #include "batch_cells.h"
 #include "lobes.h"
 
@@ -257,71 +258,6 @@ static inline void pdf_multiple_block(const hairlut_model *model, size_t n, cons
     find_cells(&model->multiple_theta, n, &theta);
     for (size_t s = 0; s < n; s += LANES)
         store(out + s, over(load(holds + s), slope_at(&theta, s)));
-}
-
-/* How many of the n samples left a block takes: a multiple of LANES, 0 when fewer than LANES are left. */
-static inline size_t block_size(size_t n)
-{
-    const size_t whole_vectors = n - n % LANES;
-    return whole_vectors < BLOCK ? whole_vectors : BLOCK;
-}
-
-/* The last n < LANES inputs, filled up with zeros. */
-static inline void pad(float padded[4][LANES], const float *const in[4], size_t n)
-{
-    for (int k = 0; k < 4; ++k)
-        for (size_t l = 0; l < LANES; ++l)
-            padded[k][l] = l < n ? in[k][l] : 0.0f;
-}
-
-static inline void copy(float *to, const float *from, size_t n)
-{
-    for (size_t l = 0; to && l < n; ++l)
-        to[l] = from[l];
-}
-
-typedef void (*sample_block)(const hairlut_model *, size_t, const float *const[4], hairlut_samples);
-typedef void (*pdf_block)(const hairlut_model *, size_t, const float *const[4], float *);
-
-static inline void sample_blocks(sample_block block, const hairlut_model *model, size_t n, const float *const in[4],
-                                 hairlut_samples out)
-{
-    size_t s = 0;
-    for (size_t m; (m = block_size(n - s)) > 0; s += m) {
-        const float *const here[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        const hairlut_samples there = {out.theta_i + s, out.phi_i + s, out.pdf_angle ? out.pdf_angle + s : NULL,
-                                       out.pdf_solid_angle ? out.pdf_solid_angle + s : NULL};
-        block(model, m, here, there);
-    }
-    if (s < n) {
-        float padded[4][LANES], result[4][LANES];
-        const float *const rest[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        const float *const here[4] = {padded[0], padded[1], padded[2], padded[3]};
-        const hairlut_samples there = {result[0], result[1], result[2], result[3]};
-        pad(padded, rest, n - s);
-        block(model, LANES, here, there);
-        copy(out.theta_i + s, result[0], n - s);
-        copy(out.phi_i + s, result[1], n - s);
-        copy(out.pdf_angle ? out.pdf_angle + s : NULL, result[2], n - s);
-        copy(out.pdf_solid_angle ? out.pdf_solid_angle + s : NULL, result[3], n - s);
-    }
-}
-
-static inline void pdf_blocks(pdf_block block, const hairlut_model *model, size_t n, const float *const in[4], float *out)
-{
-    size_t s = 0;
-    for (size_t m; (m = block_size(n - s)) > 0; s += m) {
-        const float *const here[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        block(model, m, here, out + s);
-    }
-    if (s < n) {
-        float padded[4][LANES], result[LANES];
-        const float *const rest[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        const float *const here[4] = {padded[0], padded[1], padded[2], padded[3]};
-        pad(padded, rest, n - s);
-        block(model, LANES, here, result);
-        copy(out + s, result, n - s);
-    }
 }
 
 static void sample_direct(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,

@@ -1,15 +1,8 @@
 /* The mixture of both lobes for many directions, put together from the _n functions of each lobe. */
+#include "batch.h"
 #include "lobes.h"
 
 enum { BLOCK = 128 };
-
-/* Samples [s, s + n) of the arrays in `out`. */
-static hairlut_samples shifted(hairlut_samples out, size_t s)
-{
-    const hairlut_samples rest = {out.theta_i + s, out.phi_i + s, out.pdf_angle ? out.pdf_angle + s : NULL,
-                                  out.pdf_solid_angle ? out.pdf_solid_angle + s : NULL};
-    return rest;
-}
 
 /* Whether the direct lobe is drawn from; writes its clamped weight. */
 static int draws_direct(float direct_weight, float u_lobe, float *w)
@@ -57,7 +50,7 @@ void hairlut_sample_mixture_n(const hairlut_model *model, size_t n, const float 
 {
     for (size_t s = 0; s < n; s += BLOCK)
         sample_block(model, n - s < BLOCK ? n - s : BLOCK, direct_weight + s, theta_r + s, phi_r + s, u_lobe + s,
-                     u_theta + s, u_phi + s, shifted(out, s));
+                     u_theta + s, u_phi + s, hairlut_samples_from(out, s));
 }
 
 void hairlut_pdf_mixture_n(const hairlut_model *model, size_t n, const float *direct_weight, const float *theta_r,

@@ -201,9 +201,10 @@ HAIRLUT_API void hairlut_direction(const hairlut_frame *frame, float theta, floa
 
 /* ---- many directions: structure of arrays --------------------------------------------------------------------- */
 
-/* As the functions above for i in [0,n). Every pointer addresses n floats of any alignment; n may be 0. An output may be
- * the same array as an input (in place, from the same first element), never overlap one otherwise. Results equal those of
- * the one-direction forms bit for bit, whichever kernel runs. The widest one that the processor has is chosen at run time. */
+/* As the functions above for i in [0,n). Every pointer addresses n floats of any alignment (64 bytes is fastest); n may be 0.
+ * An output may be the same array as an input (in place, from the same first element), never overlap one otherwise. Results
+ * equal those of the one-direction forms bit for bit, whichever kernel runs: portable C, AVX2, AVX-512 (from Ice Lake and
+ * Zen 4 on) or NEON, chosen at run time. */
 typedef struct hairlut_samples {
     float *theta_i;
     float *phi_i;

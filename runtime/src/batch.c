@@ -35,7 +35,7 @@ const hairlut_batch *hairlut_batch_level(int level)
 }
 
 /* A few loads and tests of what the C runtime found out when it started: no state of our own. */
-static const hairlut_batch *widest(void)
+const hairlut_batch *hairlut_batch_widest(void)
 {
     const hairlut_batch *batch = hairlut_batch_level(0);
     for (int level = 1; hairlut_batch_level(level); ++level)
@@ -46,23 +46,23 @@ static const hairlut_batch *widest(void)
 void hairlut_sample_direct_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
                              const float *u_theta, const float *u_phi, hairlut_samples out)
 {
-    widest()->sample_direct(model, n, theta_r, phi_r, u_theta, u_phi, out);
+    hairlut_batch_widest()->sample_direct(model, n, theta_r, phi_r, u_theta, u_phi, out);
 }
 
 void hairlut_sample_multiple_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
                                const float *u_theta, const float *u_phi, hairlut_samples out)
 {
-    widest()->sample_multiple(model, n, theta_r, phi_r, u_theta, u_phi, out);
+    hairlut_batch_widest()->sample_multiple(model, n, theta_r, phi_r, u_theta, u_phi, out);
 }
 
 void hairlut_pdf_direct_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
                           const float *theta_i, const float *phi_i, float *pdf_angle)
 {
-    widest()->pdf_direct(model, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
+    hairlut_batch_widest()->pdf_direct(model, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
 }
 
 void hairlut_pdf_multiple_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
                             const float *theta_i, const float *phi_i, float *pdf_angle)
 {
-    widest()->pdf_multiple(model, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
+    hairlut_batch_widest()->pdf_multiple(model, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
 }

@@ -43,4 +43,7 @@ extern const hairlut_batch hairlut_batch_neon;
 /* The sets that this processor runs, narrowest first: index 0 is the portable one. NULL from the number of sets on. */
 const hairlut_batch *hairlut_batch_level(int level);
 
+/* The last of them: what the _n functions call. */
+const hairlut_batch *hairlut_batch_widest(void);
+
 #endif

@@ -14,11 +14,11 @@ enum { ALIGNED_FROM = 16 * BLOCK };
 typedef void (*sample_block)(const hairlut_model *, size_t n, const float *const in[4], hairlut_samples);
 typedef void (*pdf_block)(const hairlut_model *, size_t n, const float *const in[4], float *);
 
-/* How many of the n samples left a block takes, 0 when fewer than LANES are left. */
-static inline size_t block_size(size_t n)
+/* How many of the n samples left are next: whole vectors, at most a block of them, or else the last n < LANES. */
+static inline size_t part_size(size_t n)
 {
     const size_t whole_vectors = n - n % LANES;
-    return whole_vectors < BLOCK ? whole_vectors : BLOCK;
+    return n < LANES ? n : whole_vectors < BLOCK ? whole_vectors : BLOCK;
 }
 
 /* How many samples come before an output's first aligned vector. The other arrays of a caller mostly begin alike. */
@@ -59,16 +59,13 @@ static inline void sample_few(sample_block block, const hairlut_model *model, si
 static inline void sample_blocks(sample_block block, const hairlut_model *model, size_t n, const float *const in[4],
                                  hairlut_samples out)
 {
-    size_t s = until_aligned(out.theta_i, n);
-    if (s > 0)
-        sample_few(block, model, s, in, out);
-    for (size_t m; (m = block_size(n - s)) > 0; s += m) {
+    const size_t unaligned = until_aligned(out.theta_i, n);
+    for (size_t s = 0, m = unaligned > 0 ? unaligned : part_size(n); s < n; s += m, m = part_size(n - s)) {
         const float *const here[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        block(model, m, here, hairlut_samples_from(out, s));
-    }
-    if (s < n) {
-        const float *const rest[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        sample_few(block, model, n - s, rest, hairlut_samples_from(out, s));
+        if (m < LANES)
+            sample_few(block, model, m, here, hairlut_samples_from(out, s));
+        else
+            block(model, m, here, hairlut_samples_from(out, s));
     }
 }
 
@@ -83,14 +80,12 @@ static inline void pdf_few(pdf_block block, const hairlut_model *model, size_t n
 
 static inline void pdf_blocks(pdf_block block, const hairlut_model *model, size_t n, const float *const in[4], float *out)
 {
-    size_t s = 0;
-    for (size_t m; (m = block_size(n - s)) > 0; s += m) {
+    for (size_t s = 0, m = part_size(n); s < n; s += m, m = part_size(n - s)) {
         const float *const here[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        block(model, m, here, out + s);
-    }
-    if (s < n) {
-        const float *const rest[4] = {in[0] + s, in[1] + s, in[2] + s, in[3] + s};
-        pdf_few(block, model, n - s, rest, out + s);
+        if (m < LANES)
+            pdf_few(block, model, m, here, out + s);
+        else
+            block(model, m, here, out + s);
     }
 }
 

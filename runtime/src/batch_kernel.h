@@ -50,8 +50,8 @@ static inline whole find_knot(const hairlut_axis *axis, real u, real *m)
     return truncated(sub(mul(y, all(axis->scale)), all(axis->origin)));
 }
 
-/* *holds gets 1, or 0 where theta_r or u is not a number. A later pass had better not read those again: arrays that begin at
- * the same offset in a page, as big ones do, push each other out of the first-level cache. */
+/* *holds gets 1, or 0 where theta_r or u is not a number; NULL if nobody asks. A later pass had better not read those again:
+ * arrays that begin at the same offset in a page, as big ones do, push each other out of the first-level cache. */
 static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, draws *q, float *holds)
 {
     for (size_t s = 0; s < n; s += LANES) {

@@ -332,10 +332,7 @@ std::string luts_argument(int &argc, char **argv)
 int main(int argc, char **argv)
 {
     const std::string directory = luts_argument(argc, argv);
-    const hairlut_batch *widest = hairlut_batch_level(0);
-    for (int level = 1; hairlut_batch_level(level); ++level)
-        widest = hairlut_batch_level(level);
-    benchmark::AddCustomContext("kernels", widest->name);
+    benchmark::AddCustomContext("kernels", hairlut_batch_widest()->name);
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv))
         return 2;

@@ -8,7 +8,7 @@
 #include "batch.h"
 #include "check.h"
 
-enum { COUNT = 77, WIDTH = 9, HEIGHT = 3 };
+enum { COUNT = 77, WIDTH = 9, WIDEST = 300, HEIGHT = 3 };
 
 /* n directions from a fixed generator, with hard ones among them. */
 static void fill(float *values, size_t n, float low, float high, uint32_t seed)
@@ -38,6 +38,15 @@ static void check_kernels(const hairlut_model *model, size_t n)
         for (size_t i = 0; i < n; ++i)
             REQUIRE(isfinite(out[2][i]) && isfinite(out[3][i]) && isfinite(out[4][i]));
     }
+}
+
+/* Their names in a line, for the coverage count. */
+static void print_kernels(void)
+{
+    printf("kernels");
+    for (int level = 0; hairlut_batch_level(level); ++level)
+        printf(" %s", hairlut_batch_level(level)->name);
+    putchar('\n');
 }
 
 static void check_batches(const hairlut_model *model, size_t n)
@@ -111,20 +120,27 @@ static void use(const hairlut_model *model)
     const hairlut_sample s = hairlut_sample_multiple(model, 0.3f, 0.5f, 0.25f, 0.75f);
     hairlut_invert_multiple(model, 0.3f, 0.5f, s.theta_i, s.phi_i, u);
     REQUIRE(fabsf(u[0] - 0.25f) < 1e-5f && fabsf(u[1] - 0.75f) < 1e-5f);
+    REQUIRE(hairlut_pdf_to_solid_angle(s.pdf_angle, s.theta_i) == s.pdf_solid_angle);
     REQUIRE(hairlut_pdf_multiple(model, NAN, 0.5f, s.theta_i, s.phi_i) == 0.0f);
     REQUIRE(hairlut_pdf_direct(model, 0.3f, 0.5f, 4.0f, s.phi_i) == 0.0f);
     check_direction(model, 0.3f, 0.5f, 0.9f, 0.1f);
 }
 
-static float texels[2][HEIGHT * WIDTH];
+static float texels[2][HEIGHT * WIDEST];
+
+static hairlut_table straight_of(int azimuth, int width)
+{
+    const float low = azimuth ? 0.0f : -1.57079637f, high = azimuth ? 6.28318548f : 1.57079637f;
+    const float last = (float)(width - 1);
+    for (int k = 0; k < HEIGHT * width; ++k)
+        texels[azimuth][k] = k % width == width - 1 ? high : low + (high - low) * (float)(k % width) / last;
+    const hairlut_table table = {texels[azimuth], width, HEIGHT, -1.5f, 1.5f, low, high, HAIRLUT_WARP_OCTAVES, 1e-6f, 0.9f};
+    return table;
+}
 
 static hairlut_table straight(int azimuth)
 {
-    const float low = azimuth ? 0.0f : -1.57079637f, high = azimuth ? 6.28318548f : 1.57079637f;
-    for (int k = 0; k < HEIGHT * WIDTH; ++k)
-        texels[azimuth][k] = k % WIDTH == WIDTH - 1 ? high : low + (high - low) * (float)(k % WIDTH) / (WIDTH - 1);
-    const hairlut_table table = {texels[azimuth], WIDTH, HEIGHT, -1.5f, 1.5f, low, high, HAIRLUT_WARP_OCTAVES, 1e-6f, 0.9f};
-    return table;
+    return straight_of(azimuth, WIDTH);
 }
 
 static void *never(void *user, size_t size)
@@ -138,6 +154,20 @@ static void forget(void *user, void *memory)
 {
     (void)user;
     free(memory);
+}
+
+/* The least width, and two that are not searched as small ones are: by two counts of 16, and with a halving between them. */
+static void check_widths(void)
+{
+    static const int widths[] = {4, 100, WIDEST};
+    for (size_t k = 0; k < sizeof widths / sizeof *widths; ++k) {
+        const hairlut_model_desc desc = {straight_of(0, widths[k]), straight_of(1, widths[k]), straight_of(0, widths[k]),
+                                         HAIRLUT_AZIMUTH_DIFFERENCE};
+        hairlut_model *model;
+        REQUIRE(hairlut_model_create(&desc, NULL, &model, NULL) == HAIRLUT_OK);
+        use(model);
+        hairlut_free(model);
+    }
 }
 
 static void check_creation(void)
@@ -254,11 +284,13 @@ int main(int argc, char **argv)
     static const float turns[] = {0.0f, -2.0f, 1e6f, -3e38f, INFINITY, NAN};
     for (size_t k = 0; k < sizeof turns / sizeof *turns; ++k)
         check_components(turns[k]);
+    check_widths();
     check_creation();
     check_validation();
     check_loader_arguments();
     for (int k = first; k < argc; ++k)
         load(argv[k]);
+    print_kernels();
     puts("done");
     return 0;
 }

@@ -1,6 +1,7 @@
 """The batch kernels give the bits of the one-direction functions, on every instruction set run here."""
 
 import re
+import signal
 import subprocess
 from pathlib import Path
 
@@ -95,6 +96,28 @@ def test_neon_equals_the_other_processors_bit_for_bit(reference):
     results = checked(emulator, program)
     assert "neon" in results
     assert set(results.values()) == set(reference.values())
+
+
+@pytest.fixture
+def old_processor() -> list[str]:
+    """Runs a program on a processor with SSE4 and no AVX: its other instructions end the program."""
+    emulator = tool("qemu-x86_64") or tool("qemu-x86_64-static")
+    if HERE_RUN is not X86 or not emulator:
+        pytest.skip("a processor without AVX2 is not emulated: on x86, apt-get install qemu-user")
+    return [emulator, "-cpu", "Nehalem"]
+
+
+def test_processor_without_avx2_runs_the_portable_kernels(reference, old_processor):
+    results = checked(*old_processor, BUILD / "tests" / "batch_check")
+    assert set(results) == {"public", "portable"}
+    assert set(results.values()) == set(reference.values())
+
+
+def test_a_kernel_that_the_processor_lacks_ends_the_program(old_processor):
+    """The emulation is awake: dispatch that asks nothing runs into AVX2."""
+    program = compiled("unasked", tool("cc"), "-O1", "-D__builtin_cpu_supports(set)=1")
+    done = subprocess.run([*old_processor, program], check=False, capture_output=True, timeout=600)
+    assert done.returncode == -signal.SIGILL
 
 
 def simde_is_there() -> bool:

@@ -1,7 +1,7 @@
 # hairlut: `make` sets up, bakes, builds and draws samples; `make test` runs everything that must hold.
 PYTHON ?= python3
 VENV := .venv
-BIN := $(CURDIR)/$(VENV)/bin
+BIN := $(VENV)/bin
 HAIRLUT := $(BIN)/hairlut
 BUILD := build
 MODELS := luts/printed luts/fitted
@@ -42,7 +42,7 @@ bake: setup
 	$(HAIRLUT) bake --model fitted --out luts
 
 build: setup
-	@$(BIN)/cmake -S runtime -B $(LIBRARY) -G Ninja -DCMAKE_MAKE_PROGRAM=$(BIN)/ninja -DCMAKE_BUILD_TYPE=Release --log-level=WARNING
+	@$(BIN)/cmake -S runtime -B $(LIBRARY) -G Ninja -DCMAKE_MAKE_PROGRAM="$(CURDIR)/$(BIN)/ninja" -DCMAKE_BUILD_TYPE=Release --log-level=WARNING
 	@$(BIN)/cmake --build $(LIBRARY) -- --quiet
 
 demo: bake build
@@ -65,7 +65,7 @@ report: build
 	PYTHONPATH=tests $(BIN)/python -m shaders.report
 
 plugin: setup
-	@cd runtime/mitsuba && $(BIN)/python -m hairscene.plugin
+	@cd runtime/mitsuba && ../../$(BIN)/python -m hairscene.plugin
 
 render: setup
 	$(BIN)/python runtime/mitsuba/render.py

@@ -9,13 +9,13 @@ CONSUMERS = HERE / "consumers"
 PROJECT = """cmake_minimum_required(VERSION 3.21)
 project(consumer LANGUAGES C CXX)
 {how}
-add_executable(c99 {consumers}/c99.c)
+add_executable(c99 "{consumers}/c99.c")
 target_link_libraries(c99 PRIVATE hairlut::{core})
-add_executable(cxx17 {consumers}/cxx17.cpp)
+add_executable(cxx17 "{consumers}/cxx17.cpp")
 target_compile_features(cxx17 PRIVATE cxx_std_17)
 target_link_libraries(cxx17 PRIVATE hairlut::{core})
 if(TARGET hairlut::exr)
-    add_executable(exr {consumers}/exr.c)
+    add_executable(exr "{consumers}/exr.c")
     target_link_libraries(exr PRIVATE hairlut::{exr})
 endif()
 """
@@ -67,7 +67,7 @@ def test_a_newer_major_version_is_not_found(prefix, tmp_path):
 
 
 def test_as_a_subdirectory(tmp_path):
-    consume(tmp_path, f"add_subdirectory({RUNTIME} hairlut)", FORMS[0])
+    consume(tmp_path, f'add_subdirectory("{RUNTIME}" hairlut)', FORMS[0])
 
 
 @pytest.mark.parametrize("linking", ["shared", "static"])

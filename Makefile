@@ -7,6 +7,7 @@ BUILD := build
 MODELS := luts/printed luts/fitted
 LIBRARY := $(BUILD)/runtime
 BENCH := $(BUILD)/bench/hairlut_bench
+REPORT := PYTHONPATH=tests $(BIN)/python -m report
 
 .PHONY: all help setup extras bake build demo test lint bench report plugin render fuzz clean
 
@@ -17,7 +18,7 @@ help:
 	@echo "make test     every test; what a missing package keeps from running is listed as skipped"
 	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
 	@echo "make bench    time the C library and its rivals, as ratios"
-	@echo "make report   regenerate luts/report/: speed against error, hard cases, the study, shaders, explorer"
+	@echo "make report   regenerate tests/report/pages/: speed against error, hard cases, the study, shaders, explorer"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
 	@echo "make render   render the hair scene with the Mitsuba plugin (about 10 minutes)"
 	@echo "make fuzz     60 seconds of coverage-guided fuzzing of the loader and the memory path"
@@ -60,15 +61,15 @@ bench: build
 
 report: build
 	$(BIN)/python tests/bench/run.py --build-only
-	$(HAIRLUT) report --bench $(BENCH)
-	$(HAIRLUT) view
-	PYTHONPATH=tests $(BIN)/python -m shaders.report
+	$(REPORT) --bench $(BENCH)
+	$(HAIRLUT) view --out tests/report/pages/explorer.html
+	$(REPORT).shaders
 
 plugin: setup
-	@cd runtime/mitsuba && ../../$(BIN)/python -m hairscene.plugin
+	@$(BIN)/python runtime/mitsuba/plugin.py
 
 render: setup
-	$(BIN)/python runtime/mitsuba/render.py
+	$(REPORT).render
 
 fuzz: setup
 	tests/fuzz/fuzz.sh 60

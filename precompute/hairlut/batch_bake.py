@@ -20,9 +20,9 @@ from pathlib import Path
 from queue import SimpleQueue
 from time import monotonic
 
-from . import familyfiles
 from .errors import HairlutError
 from .files import write_whole
+from .fit import familyfiles
 from .modelfile import SUFFIXES
 
 UP_TO_DATE = "up to date"

@@ -2,7 +2,7 @@
 
 Neither pi/2 nor 2 pi is a half float, and near them halves are 1e-3 rad or more apart: a table would lose the
 ends of its domain, and its end cells would be flat. study.py compares other 16-bit forms;
-luts/report/study.md has the figures.
+tests/report/pages/study.md has the figures.
 """
 
 from dataclasses import replace

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
+from . import figures
 from .interpolant import cells
 from .lobes import Array, Lobe
 from .measure import Errors, measure
-from .report import figures
 from .table import Table
 
 COLOURS = "viridis"

@@ -1,4 +1,4 @@
-/* The warps of the study (precompute/hairlut/study.py) in single precision; compiled once for each set of flags. */
+/* The warps of the study (tests/report/study.py) in single precision; compiled once for each set of flags. */
 #include "warps.h"
 
 #include <math.h>

@@ -1,11 +1,8 @@
 """The engine with the plugin, or a skip that says what is missing."""
 
-import sys
 from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "runtime" / "mitsuba"))
 
 
 @pytest.fixture(scope="session")
@@ -19,7 +16,7 @@ def tables():
 
 @pytest.fixture(scope="session")
 def mi():
-    from hairscene.plugin import PluginUnavailable, load_engine
+    from report.engine import PluginUnavailable, load_engine
 
     try:
         return load_engine()

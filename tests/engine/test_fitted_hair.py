@@ -18,12 +18,11 @@ PLACES = [(0, 0), (30, -45), (-30, 45), (60, 10), (-85, 80), (40, 170)]  # theta
 @pytest.fixture(scope="module")
 def rough(mi, tmp_path_factory):
     """The BSDF dictionaries by what proposes directions, for a rough hair on a coarse grid."""
-    import fitted_hair
-    from hairscene.nearfield import evaluate, midpoints
-
-    from hairlut.distribution import of_grid
-    from hairlut.fit import fit
-    from hairlut.offsets import of_grids
+    from hairlut.fit.distribution import of_grid
+    from hairlut.fit.model import fit
+    from hairlut.fit.offsets import of_grids
+    from report import fitted_hair
+    from report.hairscene.nearfield import evaluate, midpoints
 
     nested = {"type": "hair", **fitted_hair.HAIRS["rough"]}
     theta_r = np.radians(np.arange(-80.0, 81, 20))
@@ -41,7 +40,7 @@ def rough(mi, tmp_path_factory):
 @pytest.fixture(scope="module")
 def drawn(mi, rough):
     """Draws by sampler."""
-    import fitted_hair
+    from report import fitted_hair
 
     return {
         kind: fitted_hair.draw(mi, mi.load_dict(bsdf), VIEWER, DRAWS, [seed])
@@ -52,7 +51,7 @@ def drawn(mi, rough):
 @pytest.fixture(scope="module")
 def exact(mi, rough):
     """(2,) the light by quadrature, and its error."""
-    from hairscene.nearfield import light
+    from report.hairscene.nearfield import light
 
     return light(mi, mi.load_dict(rough["its own"]), VIEWER)
 
@@ -85,7 +84,7 @@ def test_what_draws_from_tables_estimates_the_light_of_the_quadrature(drawn, exa
 @pytest.mark.parametrize("kind", ["half tables, half its own", "its own"])
 @pytest.mark.parametrize("light", LIGHTS)
 def test_the_engines_own_draws_do_with_the_density_that_they_have(mi, drawn, exact, kind, light):
-    import fitted_hair
+    from report import fitted_hair
 
     hair = fitted_hair.HAIRS["rough"]
     corrected = fitted_hair.corrected(mi, drawn[kind], hair, VIEWER, fitted_hair.OWN[kind])
@@ -93,15 +92,15 @@ def test_the_engines_own_draws_do_with_the_density_that_they_have(mi, drawn, exa
 
 
 def test_the_engines_own_draws_have_an_atom(drawn):
-    from hairscene.owndensity import is_atom
+    from report.hairscene.owndensity import is_atom
 
     assert is_atom(drawn["its own"].wo).mean() > 1e-3
     assert not is_atom(drawn["family over offsets"].wo).any()
 
 
 def test_the_density_of_the_engines_draws_integrates_to_what_is_not_the_atom(mi, drawn, rough):
-    import fitted_hair
-    from hairscene.owndensity import density, is_atom
+    from report import fitted_hair
+    from report.hairscene.owndensity import density, is_atom
 
     theta, phi = np.meshgrid(
         (np.arange(400) + 0.5) / 400 * np.pi - np.pi / 2, np.arange(200) / 200 * 2 * np.pi, indexing="ij"
@@ -130,7 +129,7 @@ def test_a_family_samples_nearly_as_well_as_the_bsdfs_own_sampler(drawn):
 
 
 def test_a_family_has_no_large_weights(mi, rough):
-    from hairscene.nearfield import largest_weight
+    from report.hairscene.nearfield import largest_weight
 
     kinds = ("family over offsets", "one fitted model", "its own")
     family, one, own = (largest_weight(mi, mi.load_dict(rough[kind]), VIEWER) for kind in kinds)

@@ -15,7 +15,7 @@ TILT = 0.1  # of the wrong density, relative, across the fibre
 @pytest.fixture(scope="module")
 def hair_scene(mi, tmp_path_factory):
     """A scene of few strands that fill the picture, by BSDF, environment map and integrator."""
-    from hairscene.scene import Hair, scene_dict, strand_points, write_strands
+    from report.hairscene.scene import Hair, scene_dict, strand_points, write_strands
 
     strands = tmp_path_factory.mktemp("hair") / "strands.txt"
     write_strands(strand_points(Hair(strands=1500, locks=12, radius=0.014)), strands)
@@ -30,7 +30,7 @@ def hair_scene(mi, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def nested(mi):
-    from hairscene.scene import light_hair
+    from report.hairscene.scene import light_hair
 
     return light_hair()
 

@@ -9,11 +9,11 @@ from scipy import special, stats
 
 from hairlut import cli, exr, interpolant
 from hairlut.errors import HairlutError
-from hairlut.family import LOBES, MAX_LOBES, fit_family, nearness
-from hairlut.familyfiles import NAME, contents, model_name
-from hairlut.fit import variance
-from hairlut.offsets import even_azimuth, of_grids, read
-from hairlut.turning import track, turned
+from hairlut.fit.family import LOBES, MAX_LOBES, fit_family, nearness
+from hairlut.fit.familyfiles import NAME, contents, model_name
+from hairlut.fit.model import variance
+from hairlut.fit.offsets import even_azimuth, of_grids, read
+from hairlut.fit.turning import track, turned
 
 GAMMA = np.linspace(0, np.pi / 2, 13)
 THETA_R = np.radians(np.arange(-60.0, 61, 20))

@@ -9,11 +9,11 @@ import pytest
 from scipy import stats
 
 from hairlut import cli, exr, interpolant, modelfile
-from hairlut.decompose import mixture
-from hairlut.distribution import of_grid, of_samples, read
 from hairlut.errors import HairlutError
-from hairlut.fit import fit
-from hairlut.fitfiles import write_all
+from hairlut.fit.decompose import mixture
+from hairlut.fit.distribution import of_grid, of_samples, read
+from hairlut.fit.files import write_all
+from hairlut.fit.model import fit
 
 MEASURED = "precompute/examples/measured.toml"
 DRAWS = 40_000  # for each theta_r

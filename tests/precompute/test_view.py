@@ -16,6 +16,7 @@ from hairlut.cli import main
 from hairlut.export import read_model
 from hairlut.lobes import MODELS
 from hairlut.measure import measure
+from report.places import PAGES
 
 LUTS = ROOT / "luts"
 SIZES = (16, 32)
@@ -244,8 +245,8 @@ def test_page_holds_the_shipped_shader_and_tables(file):
 
 
 def test_shipped_page_is_made_of_what_is_shipped():
-    """The page in luts/report is generated: run hairlut view when shader, viewer or table change."""
-    text = (LUTS / "report" / "explorer.html").read_text()
+    """The page of the report is generated: run `make report` when shader, viewer or table change."""
+    text = (PAGES / "explorer.html").read_text()
     assert (SHADERS / "hairlut.glsl").read_text() in text
     assert (view.VIEWER / "explorer.js").read_text() in text
     assert (view.VIEWER / "style.css").read_text() in text

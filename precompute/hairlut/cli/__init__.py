@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from .. import __version__
 from ..errors import HairlutError
 
-COMMANDS = ("bake", "fit", "inspect", "verify", "export", "view", "plot", "report", "study")
+COMMANDS = ("bake", "fit", "inspect", "verify", "export", "view", "plot")
 OK, CHECK_FAILED, WRONG_USE = 0, 1, 2
 
 EPILOG = """examples:

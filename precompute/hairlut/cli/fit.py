@@ -4,12 +4,12 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from ..decompose import LOBES
-from ..distribution import CELLS, ROWS
 from ..errors import HairlutError
-from ..family import LOBES as FAMILY_LOBES
-from ..family import SHAPES
-from ..offsets import holds_offsets
+from ..fit.decompose import LOBES
+from ..fit.distribution import CELLS, ROWS
+from ..fit.family import LOBES as FAMILY_LOBES
+from ..fit.family import SHAPES
+from ..fit.offsets import holds_offsets
 
 Report = Callable[[str, float], None]
 
@@ -89,9 +89,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _model(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
     """Both models of one distribution: what to say, and what was written."""
-    from ..distribution import read
-    from ..fit import fit
-    from ..fitfiles import text, write_all
+    from ..fit.distribution import read
+    from ..fit.files import text, write_all
+    from ..fit.model import fit
 
     name = args.name or args.data.stem
     data = read(args.data, args.measure == "solid-angle", args.rows, CELLS)
@@ -105,9 +105,9 @@ def _model(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
 
 def _family(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
     """The family of a grid over offsets, likewise."""
-    from ..family import fit_family
-    from ..familyfiles import text, write_family
-    from ..offsets import read
+    from ..fit.family import fit_family
+    from ..fit.familyfiles import text, write_family
+    from ..fit.offsets import read
 
     if args.lobes != "both":
         raise HairlutError(f"--lobes {args.lobes}: {args.data} has offsets: use --lobes-per-offset")
@@ -120,7 +120,7 @@ def _family(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
 
 def _plot(result, path: Path, name: str) -> Path:
     from ..files import write_whole
-    from ..fitplot import plot
+    from ..fit.plot import plot
 
     try:
         return write_whole(path, plot(result, name))

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 EXAMPLES = """examples:
-  hairlut view --open                      write luts/report/explorer.html and show it in a browser
+  hairlut view --open                      write explorer.html and show it in a browser
   hairlut view build/mine --out mine.html  a model of your own"""
 
 
@@ -23,7 +23,7 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     parser.add_argument(
         "--out",
         type=Path,
-        default=Path("luts/report/explorer.html"),
+        default=Path("explorer.html"),
         metavar="FILE",
         help="page to write (default: %(default)s)",
     )

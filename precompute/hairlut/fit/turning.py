@@ -1,0 +1,73 @@
+"""Masses of even cells around a circle, turned by an angle, and by how much one is another turned."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..lobes import Array
+
+TWO_PI = 2 * np.pi
+REACH = np.radians(20.0)
+"""How far from where the last two offsets point a highlight is looked for at the next, and"""
+FIRST_REACH = np.radians(60.0)
+"""how far from the brightest offset at the one beside it."""
+TRUST = 0.005
+"""Where a lobe has this part of its greatest light, its place counts as much as where those two point."""
+
+
+def turned(mass: Array, angle: Array) -> Array:
+    """(..., m) masses turned by angle (...), rad: by cubics between the cells (Catmull and Rom), none below
+    0."""
+    cells = mass.shape[-1]
+    steps = np.asarray(angle)[..., None] * (cells / TWO_PI)
+    whole = np.floor(steps).astype(int)
+    t = steps - whole
+    shape = np.broadcast_shapes(mass.shape, (*whole.shape[:-1], cells))
+    a, b, c, d = (
+        np.take_along_axis(
+            np.broadcast_to(mass, shape),
+            np.broadcast_to((np.arange(cells) - whole + k) % cells, shape),
+            -1,
+        )
+        for k in (1, 0, -1, -2)
+    )
+    cubic = b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)))
+    return np.maximum(cubic, 0.0)
+
+
+def track(mass: Array, light: Array, shape: Array) -> Array:
+    """(N,) angles by which shape (m,) is turned in each of mass (N, m), continuous along N: followed from
+    where light (N,) is greatest. Where there is none, the angle goes on as it went before."""
+    agreement = np.fft.irfft(np.fft.rfft(mass) * np.conj(np.fft.rfft(shape)), mass.shape[1])
+    angle = np.zeros(len(mass))
+    start = int(np.argmax(light))
+    angle[start] = _peak(agreement[start], np.ones(mass.shape[1], bool))
+    trust = light / np.maximum(light + TRUST * light[start], 1e-300)
+    for step in (1, -1):
+        for o in range(start + step, len(mass) if step > 0 else -1, step):
+            last, before = o - step, o - 2 * step
+            known = (before - start) * step >= 0
+            expected = 2 * angle[last] - angle[before] if known else angle[last]
+            angle[o] = _follow(agreement[o], expected, REACH if known else FIRST_REACH, trust[o])
+    return angle
+
+
+def _follow(agreement: Array, expected: float, reach: float, trust: float) -> float:
+    """The angle within reach of expected at which the agreement (m,) is greatest, as far as it is trusted."""
+    away = _wrapped(np.arange(agreement.size) * (TWO_PI / agreement.size) - expected)
+    return expected + trust * _wrapped(_peak(agreement, abs(away) <= reach) - expected)
+
+
+def _peak(agreement: Array, allowed: Array) -> float:
+    """The angle of the greatest agreement (m,) among the cells allowed (m,), by a parabola through three."""
+    if not allowed.any():
+        allowed = np.ones_like(allowed)
+    i = int(np.where(allowed, agreement, -np.inf).argmax())
+    low, here, high = agreement[i - 1], agreement[i], agreement[(i + 1) % agreement.size]
+    bend = low - 2 * here + high
+    offset = (low - high) / (2 * bend) if bend < 0 and here >= max(low, high) else 0.0
+    return (i + offset) * TWO_PI / agreement.size
+
+
+def _wrapped(angle):
+    return (angle + np.pi) % TWO_PI - np.pi

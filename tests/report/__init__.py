@@ -1,0 +1,114 @@
+"""The pages of tests/report/pages/: speed against error, hard cases, the study behind the design."""
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from report.markdown import table
+
+PAGES = (
+    (
+        "[Speed against error](speed_error.md)",
+        "time and variance of a sample, at every size, beside its rivals",
+    ),
+    (
+        "[Hard cases](hard_cases.md)",
+        "narrow, cut, split, flat and broken densities: with which error they work",
+    ),
+    (
+        "[The study](study.md)",
+        "why this warp, these cells, these ends: every alternative on the same measure",
+    ),
+    ("[In a renderer](render.md)", "variance and bias of a rendered lock of hair"),
+    ("[A scene's own hair](fit.md)", "tables fitted to a hair BSDF, beside that BSDF's own sampler"),
+    ("[Shaders](shaders.md)", "the same tables on the GPU's side, checked against C"),
+    ("[Explorer](explorer.html)", "the lobes to play with, in a browser"),
+)
+
+AFTER = """
+`make report` writes the first three again, `hairlut plot luts` draws each table.
+
+![Time per sample against relative variance](speed_error.svg)
+
+![A lobe, its texture, and draws from it](lobe_and_texture.png)
+"""
+
+
+def index() -> str:
+    """The page that leads to the others."""
+    return "# Report\n\n" + table(("page", "what it answers"), PAGES) + AFTER
+
+
+@contextmanager
+def progress(title: str) -> Iterator[Callable[[str], None]]:
+    """step(text) shows what is being worked on, on a terminal."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    with console.status(title) as status:
+        yield lambda text: status.update(f"{title}: {text}")
+
+
+def write(out: Path, luts: Path, bench: Path, parts: Iterable[str]) -> list[Path]:
+    """Writes the index and the pages of the parts named ("speed", "hard", "study", "pictures")."""
+    out.mkdir(parents=True, exist_ok=True)
+    pages = {"speed": _speed, "hard": _hard, "study": _study, "pictures": _pictures}
+    written = [page for part in parts for page in pages[part](out, luts, bench)]
+    (out / "README.md").write_text(index())
+    return [*written, out / "README.md"]
+
+
+def _shipped(luts: Path) -> list:
+    from hairlut import exr
+    from hairlut.lobes import MODELS
+
+    lobes = [lobe for model in MODELS.values() for lobe in model.lobes]
+    return [(exr.read(luts / lobe.model / f"{lobe.name}.exr")[0], lobe) for lobe in lobes]
+
+
+def _speed(out: Path, luts: Path, bench: Path) -> list[Path]:
+    from report import bake_speed, speed, timing
+
+    with progress("speed against error") as step, TemporaryDirectory() as folder:
+        step("baking every size")
+        points = speed.bake_sizes(Path(folder))
+        step("timing")
+        times = timing.run(bench, Path(folder), speed.PATTERN)
+    first = dict(list(speed.AXES.items())[:1])
+    figures = [
+        speed.draw(points, times, out / "speed_error.svg", first),
+        speed.draw(points, times, out / "speed_error_axes.svg"),
+    ]
+    page = out / "speed_error.md"
+    page.write_text(speed.page(points, times, bake_speed.section(bake_speed.compare(_shipped(luts)))))
+    return [page, *figures]
+
+
+def _hard(out: Path, luts: Path, bench: Path) -> list[Path]:
+    from report import hard
+
+    with progress("hard cases") as step:
+        outcomes = []
+        for case in hard.CASES:
+            step(case.name)
+            outcomes.append(hard.attempt(case))
+        draws = [end for baked, lobe in _shipped(luts) for end in hard.ends(baked, lobe)]
+    page = out / "hard_cases.md"
+    page.write_text(hard.page(outcomes, draws))
+    return [page]
+
+
+def _study(out: Path, luts: Path, bench: Path) -> list[Path]:
+    from report import study_page
+
+    with progress("study") as step:
+        study_page.write(out, step)
+    return [out / "study.md", out / "study_warps.svg", out / "study_sizes.svg"]
+
+
+def _pictures(out: Path, luts: Path, bench: Path) -> list[Path]:
+    from hairlut import exr, plot
+
+    shown, _ = exr.read(luts / "fitted" / "direct_theta.exr")
+    return [plot.plot_lobe_and_texture(shown, out / "lobe_and_texture.png")]

@@ -1,0 +1,5 @@
+"""The fixtures of the shipped tables."""
+
+from precompute.conftest import shipped
+
+__all__ = ["shipped"]

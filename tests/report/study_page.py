@@ -1,0 +1,212 @@
+"""The study as a page: what was compared, what came out, what was decided."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from hairlut import figures, study
+from hairlut.study import Result
+from report.markdown import table as markdown_table
+
+WIDTH = HEIGHT = 64
+SIDES = (16, 24, 32, 48, 64, 96, 128)
+HALF_SIDES = (16, 32, 64, 128)
+
+TEXT = f"""# The study behind the design
+
+Everything here is measured by `make report` with the same code that `hairlut verify` uses: float32 texels
+of {WIDTH}x{HEIGHT} tables, on every row and at three points between rows, the worst of them shown. V is the
+relative variance that a table adds to an estimate. The four lobes are theta of the direct lobe in both
+readings, the azimuth, and theta of the multiple lobe; the readings share the last two.
+
+## Decision
+
+1. **Cells are parabolas in u**: x(f) = x0 + f (d + c (1-f)) with u even in f. The density is a cell's width
+   in u over dx/df, whatever the warp: the warp has no derivative to evaluate, and may have kinks. With
+   *linear* cells no warp is good enough: none, those optimised for one lobe alone included, brings theta of
+   the direct lobe below 1.1e-3 (fitted) or 1.4e-3 (printed). With parabolas V is almost a hundred times less
+   on fitted lobes. Curvatures follow from the texels and the knots, once, when a table is loaded: the density
+   at a knot is that of the two cells beside it, blended linearly in x.
+2. **Warp: octaves**, folded at u = 1/2, columns uniform in what the bits of m+e make when they are shifted
+   right by two, m = min(u, 1-u). It is the cheapest with dense ends, one integer operation, and within 4e-6
+   of the V of the best, which takes two square roots. One bit less leaves the tails too coarse (1.3e-3 on
+   fitted theta), no shift the middle (3.8e-5). Three bits do as well at this size, but wider tables of the
+   printed lobe then need a larger e to keep their end cells a float wide (the second figure).
+3. **e is measured for each table**, a power of two: the largest that keeps V, because a large e keeps the
+   end cells wide in float steps.
+4. **The outermost knot lies on the domain's end**, not at the 2^-25 quantile. Stopping at the quantile
+   shortens the tails and loses 1e-7 of the lobe's mass, but a renderer's BSDF is not the lobe: a direction
+   that the table never draws is energy that no weight restores. With curved end cells full support costs
+   up to 6e-6 of V, and the largest weight stays below 7.3. That is why **a curvature may be 0.95 of a cell's
+   width**: the end cells need it, with a bound of 0.8 the largest weight is 13, with 0.5 it is 34.
+5. **Rows are even in theta_r.** Uneven rows help one lobe and harm another: rows dense in the middle take
+   theta of the printed direct lobe from 7e-5 to 5e-5 and at least double V everywhere else.
+6. **The azimuth keeps the whole range** of theta_r. Half of it would do, at the same V, and save 3 KB; but
+   then one table of three would be read by another rule, and lobes of one's own need not be even.
+7. **Texels are 32-bit floats.** Half floats of the angle make cells of the direct lobe flat at almost every
+   size. The best 16-bit form, the distance to the nearer end as a half float, is nearly as good as floats up
+   to 32x32, and adds variance from there on (1.8e-4 instead of 1.6e-5 at 64x64), since the middle of the
+   domain is then known to 5e-4 rad only. In the direct lobe it never reaches the default tolerance of 1e-4,
+   and the library expands texels on loading anyway: not shipped.
+"""
+
+WARPS = ("candidate", "cells", *(f"{lobe.model}/{lobe.name}" for lobe in study.LOBES))
+DETAILS = (
+    "candidate", "cells", "lobe", "e", "V", "largest weight", "P(weight > 4)", "TV", "quantile error",
+    "u in [2^-12, 1-2^-12]", "flat cells", "narrowest, float steps",
+)  # fmt: skip
+
+
+def summary(results: list[Result]) -> str:
+    """One line for each candidate and cell: V of each lobe."""
+    lines: dict[tuple[str, str], dict[str, str]] = {}
+    for each in results:
+        lines.setdefault((each.candidate, each.cell), {})[each.lobe] = _variance(each)
+    return markdown_table(
+        WARPS, ((*key, *(found[lobe] for lobe in WARPS[2:])) for key, found in lines.items())
+    )
+
+
+def _variance(each: Result) -> str:
+    v = each.errors.relative_variance
+    return "infinite" if each.flat or not v < 1e6 else f"{v:.1e}"
+
+
+def _number(x: float, form: str) -> str:
+    return "infinite" if not x < 1e6 else format(x, form)
+
+
+def details(results: Iterable[Result]) -> str:
+    return markdown_table(DETAILS, map(_detail, results))
+
+
+def _detail(each: Result) -> tuple[str, ...]:
+    errors = each.errors
+    return (
+        each.candidate,
+        each.cell,
+        each.lobe,
+        f"2^{np.log2(each.e):.0f}" if each.e else "",
+        _variance(each),
+        _number(errors.largest_weight, ".3g"),
+        f"{errors.heavy_probability:.0e}",
+        f"{errors.total_variation:.1e}",
+        f"{errors.quantile_error:.1e}",
+        f"{errors.inner_quantile_error:.1e}",
+        str(each.flat),
+        f"{each.narrowest:.0f}",
+    )
+
+
+def short(results: Iterable[Result]) -> str:
+    """Candidate, lobe, V, largest weight, lost mass."""
+    rows = (
+        (
+            each.candidate,
+            each.lobe,
+            _variance(each),
+            _number(each.errors.largest_weight, ".3g"),
+            f"{each.errors.lost_mass:.0e}",
+        )
+        for each in results
+    )
+    return markdown_table(("candidate", "lobe", "V", "largest weight", "mass lost"), rows)
+
+
+def sixteen_bits(results: Iterable[tuple[int, Result]]) -> str:
+    rows: dict[tuple[int, str], dict[str, str]] = {}
+    for side, each in results:
+        flat = f" ({each.flat} flat)" if each.flat else ""
+        rows.setdefault((side, each.candidate), {})[each.lobe] = _variance(each) + flat
+    return markdown_table(
+        ("side", "texel", *WARPS[2:]), ((*key, *found.values()) for key, found in rows.items())
+    )
+
+
+def draw_warps(results: list[Result], path: Path) -> Path:
+    """V of every candidate on every lobe, linear against curved cells."""
+    names = list(dict.fromkeys(each.candidate for each in results if each.errors.relative_variance < 1e6))
+    figure, panel = figures.new(size=(9, 5.5))
+    colours = figures.BLUE, figures.ORANGE, figures.GREEN, figures.PURPLE
+    for lobe, colour in zip(WARPS[2:], colours, strict=True):
+        for cell, marker in (("linear", "o"), ("parabola", "D")):
+            mine = [
+                each
+                for each in results
+                if each.lobe == lobe and each.cell == cell and each.candidate in names
+            ]
+            panel.plot(
+                [each.errors.relative_variance for each in mine],
+                [names.index(each.candidate) for each in mine],
+                marker, color=colour, mfc=colour if cell == "parabola" else "white", ms=7,
+                label=f"{lobe}, {'curved' if cell == 'parabola' else 'linear'} cells",
+            )  # fmt: skip
+    panel.set(
+        xscale="log",
+        xlabel=f"relative variance V, {WIDTH}x{HEIGHT}",
+        yticks=range(len(names)),
+        yticklabels=names,
+    )
+    panel.invert_yaxis()
+    panel.axvline(1e-4, color=figures.GREY, linewidth=1, linestyle=":")
+    panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.3, -0.12), ncols=2)
+    return figures.save(figure, path)
+
+
+def draw_sizes(results: list[tuple[int, Result]], path: Path) -> Path:
+    """V against the side of a square table for the designs of study.sizes."""
+    figure, panels = figures.new(1, 2, size=(11, 4.6), sharey=True)
+    looks = {
+        "uniform, linear cells": (figures.ORANGE, "s-"),
+        "octaves, linear cells": (figures.GREEN, "^-"),
+        "three bits, curved cells": (figures.PURPLE, "x--"),
+        "octaves, curved cells": (figures.BLUE, "o-"),
+    }
+    for panel, lobe in zip(panels, ("printed/direct_theta", "fitted/direct_theta"), strict=True):
+        for name, (colour, line) in looks.items():
+            mine = [(side, each) for side, each in results if each.candidate == name and each.lobe == lobe]
+            variances = [each.errors.relative_variance for _, each in mine]
+            panel.plot([side for side, _ in mine], variances, line, color=colour, label=name)
+        panel.set(
+            xscale="log",
+            yscale="log",
+            xlabel="side of the table",
+            title=lobe,
+            xticks=SIDES,
+            xticklabels=SIDES,
+        )
+        panel.minorticks_off()
+    panels[0].set_ylabel("relative variance V")
+    panels[0].legend()
+    return figures.save(figure, path)
+
+
+def write(out: Path, step=lambda text: None) -> None:
+    """study.md and its figures."""
+    step("warps")
+    warps = [*study.warps(WIDTH, HEIGHT), *study.bounds(WIDTH, HEIGHT)]
+    draw_warps(warps, out / "study_warps.svg")
+    step("sizes")
+    draw_sizes(list(study.sizes(SIDES)), out / "study_sizes.svg")
+    step("ends, bounds, rows, ranges")
+    parts = [
+        TEXT,
+        "## Warps and cells: V\n",
+        summary(warps),
+        "![V of every warp with linear and with curved cells](study_warps.svg)\n",
+        "![V against the size of the table](study_sizes.svg)\n",
+        "## The ends\n",
+        short(study.ends(WIDTH, HEIGHT)),
+        "## The bound of a curvature\n",
+        short(study.limits(WIDTH, HEIGHT)),
+        "## Rows\n",
+        short(study.rows(WIDTH, HEIGHT)),
+        "## The azimuth's range\n",
+        short(study.half_range(WIDTH, HEIGHT)),
+    ]
+    step("16-bit texels")
+    parts += ["## Sixteen bits: V at the e that suits each best\n", sixteen_bits(study.encodings(HALF_SIDES))]
+    parts += ["## All metrics\n", details(warps)]
+    parts += ["What the warp costs in C is measured in [speed_error.md](speed_error.md).\n"]
+    (out / "study.md").write_text("\n".join(parts))

@@ -1,0 +1,145 @@
+"""The report's parts: times parsed, pages with every row, figures that exist, and the bake's speed as a
+ratio."""
+
+import json
+import stat
+
+import numpy as np
+import pytest
+
+from hairlut import exr
+from hairlut.errors import HairlutError
+from hairlut.interpolant import Cell
+from hairlut.lobes import FITTED, MODELS
+from hairlut.warp import Warp
+from report import bake_speed, markdown, study, timing
+
+matplotlib = pytest.importorskip("matplotlib", reason="figures need pip install 'precompute[report]'")
+
+CURVED = Cell("parabola", 0.95)
+
+
+def shipped_tables(luts):
+    return [
+        (exr.read(luts / model.name / f"{lobe.name}.exr")[0], lobe)
+        for model in MODELS.values()
+        for lobe in model.lobes
+    ]
+
+
+def test_the_bake_is_fast_and_exact():
+    """Six shipped tables within 0.5 s, 34 times faster than scipy's numerical inversion on an idle core."""
+    from precompute.conftest import LUTS
+
+    trials = [bake_speed.compare(shipped_tables(LUTS), rows=4) for _ in range(3)]
+    ours, polynomial, truncnorm = (
+        min(way, key=lambda baking: baking.seconds) for way in zip(*trials, strict=True)
+    )
+    assert ours.seconds < 0.5
+    assert polynomial.seconds > 15 * ours.seconds  # loose: half of what an idle core shows
+    assert ours.error <= 1e-12
+    assert ours.error <= min(polynomial.error, truncnorm.error)
+
+
+def test_times_are_the_least_of_the_repetitions(tmp_path):
+    entries = [
+        {"run_name": "sample/scalar/64/direct_theta", "run_type": "iteration", "ns": ns}
+        for ns in (3.0, 9.0, 4.0)
+    ]
+    entries.append({"run_name": "sample/scalar/64/direct_theta", "run_type": "aggregate", "ns": 99.0})
+    program = tmp_path / "bench"
+    program.write_text(f"#!/bin/sh\ncat <<'END'\n{json.dumps({'benchmarks': entries})}\nEND\n")
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    times = timing.run(program, tmp_path, ".*")
+    assert times.ns == {"sample/scalar/64/direct_theta": 3.0}
+    assert times.spread["sample/scalar/64/direct_theta"] == pytest.approx(6 / 3)
+
+
+def test_a_missing_benchmark_program_is_named(tmp_path):
+    with pytest.raises(HairlutError, match="build tests/bench"):
+        timing.run(tmp_path / "nothing", tmp_path, ".*")
+
+
+def test_a_processor_is_described_as_far_as_the_benchmark_says():
+    caches = [{"level": 1, "size": 32768}, {"level": 2, "size": 1048576}]
+    told = timing.describe("X", {"kernels": "avx2", "caches": caches})
+    assert told == "X (avx2 kernels, second-level cache of 1024 KiB)"
+    assert timing.describe("X", {"caches": caches[:1]}) == "X"
+
+
+def test_markdown_table():
+    assert markdown.table(("a", "b"), [(1, "x")]) == "| a | b |\n| --- | --- |\n| 1 | x |\n"
+
+
+def test_speed_page_says_who_wins(tmp_path):
+    from report import speed
+
+    points = speed.bake_sizes(tmp_path / "sizes", (16,))
+    assert (tmp_path / "sizes" / "16" / "direct_phi.exr").is_file()
+    names = {"sample/scalar/64/direct_theta": 10.0, "sample/batch/64/direct_theta": 2.0}
+    names |= {"sample/batch/16/direct_theta": 2.0, "uniform/scalar/16/direct_theta": 9.0}
+    names |= {"rival/analytic/scalar/fitted/direct_theta": 95.0, "rival/mkl/vector/fitted/direct_theta": 1.0}
+    times = timing.Times(names, dict.fromkeys(names, 0.1), "a processor")
+    text = speed.page(points, times)
+    assert "against plain C: two erff, Giles' erfinv: hairlut is 9.5 times faster" in text
+    assert "MKL: vsErf, vsErfInv, vsExp over arrays: **the rival wins, 2.0 times**" in text
+    assert text.count("| octaves warp, curved cells | 16 |") == 1
+    assert speed.draw(points, times, tmp_path / "figure.svg").stat().st_size > 5000
+
+
+def test_plot_command_draws_a_file(tmp_path):
+    from hairlut.cli import main
+    from precompute.conftest import LUTS
+
+    assert main(["plot", str(LUTS / "fitted" / "multiple_theta.exr"), "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "fitted_multiple_theta.png").stat().st_size > 20_000
+
+
+# ---- the study's candidates
+# -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("family", study.FAMILIES.values(), ids=study.FAMILIES.keys())
+@pytest.mark.parametrize("e", [2.0**-10, 2.0**-18])
+def test_candidate_warps_invert(family, e):
+    warp, width = family(e), 33
+    c = np.linspace(0, 16, 101)
+    m = warp.unfold(c, width)
+    assert m[0] == 0.0
+    assert m[-1] == pytest.approx(0.5, rel=1e-12)
+    assert (np.diff(m) > 0).all()
+    assert warp.fold(m, width) == pytest.approx(c, abs=1e-6)
+    i, f = warp.place(m, np.zeros(101, bool), width)
+    assert warp.knots(width)[0][i] + f * warp.widths(width)[i] == pytest.approx(m, rel=1e-9)
+
+
+def test_curved_cells_beat_the_best_warp_with_linear_ones():
+    """The decision of the study, on the lobe that decides: one Gaussian in theta, at 64x64."""
+    lobe = FITTED.direct_theta
+    curved = study.best_of(study.octaves, lobe, 64, 64, CURVED)[0]
+    own = study.own_warp(lobe, 64, study.LINEAR, rounds=1)
+    v_curved, v_linear = (
+        study.result("", study.tabulate_any(lobe, 64, 64, warp, cell), lobe, False).errors.relative_variance
+        for warp, cell in ((curved, CURVED), (own, study.LINEAR))
+    )
+    assert v_curved < 5e-5
+    assert v_linear > 5e-4
+
+
+def test_the_domains_end_costs_little_and_loses_nothing():
+    results = {(r.candidate, r.lobe): r.errors for r in study.ends(32, 32)}
+    for lobe in study.LOBES:
+        label = f"{lobe.model}/{lobe.name}"
+        full, cut = results["domain's end", label], results["2^-25 quantile", label]
+        assert full.lost_mass == 0.0
+        assert cut.lost_mass > 1e-8
+        assert full.relative_variance <= 1.5 * cut.relative_variance + 5e-5
+
+
+def test_uniform_is_the_worst_and_halves_go_flat():
+    lobe = FITTED.direct_theta
+    table = study.tabulate_any(lobe, 64, 64, Warp("uniform"), study.LINEAR)
+    assert study.result("", table, lobe, False).errors.relative_variance > 0.1
+    table = study.tabulate_any(lobe, 64, 64, study.octaves(2.0**-18), CURVED)
+    rounded = study.as_half(table.texels, lobe.domain)
+    assert (np.diff(rounded, axis=1) <= 0).any()

@@ -9,11 +9,11 @@ roots. Columns are dense near the ends, where a quantile function is steep, and 
 F bends at every power of two. That costs nothing, because a cell is a parabola in u and not in the column
 (interpolant.py): the warp only chooses where the knots lie.
 
-Why this one (tests/report/pages/study.md has every alternative on the same measure). A renderer pays for
-a table's relative variance V. With curved cells every warp with dense ends is good enough, and this one is
-the cheapest. The outermost knots are the domain's ends, not a far quantile: a renderer's BSDF is not the lobe,
-and a direction that the table never draws is energy that no weight restores. With curved end cells that
-support is nearly free. e is a power of two that size.py measures for each table.
+Why this one (tests/report/pages/study.md has every alternative on the same measure). A renderer pays for a
+table's relative variance V. With curved cells every warp with dense ends is good enough, and this one is
+the cheapest. The outermost knots are the domain's ends, not a far quantile: a renderer's BSDF is not the
+lobe, and a direction that the table never draws is energy that no weight restores. With curved end cells
+that support is nearly free. e is a power of two that size.py measures for each table.
 """
 
 from dataclasses import dataclass

@@ -17,11 +17,11 @@ from .axis import AXIS, axis_numbers
 from .errors import HairlutError
 from .files import write_whole
 from .interpolant import curvatures
+from .lobes import AZIMUTHS, DIFFERENCE, SUM, TABLES
 from .table import Table
 from .warp import Warp
 
-TABLES = ("direct_theta", "direct_phi", "multiple_theta")
-AZIMUTHS = {"sum": "HAIRLUT_AZIMUTH_SUM", "difference": "HAIRLUT_AZIMUTH_DIFFERENCE"}
+IN_C = {SUM: "HAIRLUT_AZIMUTH_SUM", DIFFERENCE: "HAIRLUT_AZIMUTH_DIFFERENCE"}
 GROUP = 16  # texels, runtime/src/internal.h
 WARPS = {"octaves": "HAIRLUT_WARP_OCTAVES", "uniform": "HAIRLUT_WARP_UNIFORM"}
 
@@ -197,6 +197,4 @@ def _axis(table: Table, name: str) -> str:
 
 def _entry(tables: Sequence[Table], arrays: Arrays) -> str:
     axes = ",\n      ".join(_axis(table, arrays[_content(table)][0]) for table in tables)
-    return (
-        f'    {{"{tables[0].model}",\n     {{{axes},\n      {AZIMUTHS[tables[1].azimuth]}, {{0, 0, 0}}}}}},'
-    )
+    return f'    {{"{tables[0].model}",\n     {{{axes},\n      {IN_C[tables[1].azimuth]}, {{0, 0, 0}}}}}},'

@@ -7,9 +7,10 @@ import numpy as np
 import OpenEXR
 
 from . import __version__
+from .cell import Cell
 from .errors import HairlutError
 from .files import replace_whole
-from .interpolant import Cell
+from .lobes import DIFFERENCE, NO_AZIMUTH, SUM
 from .table import Table, check_size
 from .warp import Warp
 
@@ -80,7 +81,7 @@ def read(path: Path) -> tuple[Table, dict[str, float]]:
         model=reader.text("model"),
         name=reader.one_of("table", (path.stem,), f"rename the file to the table it holds, or {REBAKE}"),
         angle=reader.one_of("angle", ("theta_i", "phi")),
-        azimuth=reader.one_of("azimuth", ("sum", "difference", "none")),
+        azimuth=reader.one_of("azimuth", (SUM, DIFFERENCE, NO_AZIMUTH)),
         domain=reader.interval("domain"),
         theta_r_range=reader.interval("theta_r_range"),
         parameters=reader.text("parameters"),

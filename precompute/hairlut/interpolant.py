@@ -11,42 +11,11 @@ slope stays positive. X, D and C of two neighbouring rows are blended linearly i
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import parameter
-from .errors import HairlutError
 from .lobes import Array
-
-if TYPE_CHECKING:
-    from .table import Table
-
-MAX_LIMIT = 0.95
-
-
-@dataclass(frozen=True)
-class Cell:
-    """name: "parabola" or "linear"; limit: bound of the curvature, relative to the width; 0 for linear."""
-
-    name: str
-    limit: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.name == "linear" and self.limit == 0.0:
-            return
-        if self.name != "parabola":
-            raise HairlutError(f"cell {self} is not known: expected 'parabola limit=NUMBER' or 'linear'")
-        if not 0.0 < self.limit <= MAX_LIMIT:
-            raise HairlutError(f"cell {self}: expected a limit above 0, up to {MAX_LIMIT}")
-
-    def __str__(self) -> str:
-        return f"{self.name} limit={self.limit!r}" if self.name == "parabola" else self.name
-
-    @classmethod
-    def parse(cls, text: str) -> "Cell":
-        """From "linear" or "parabola limit=NUMBER", as in a file's header."""
-        return cls(*parameter.parse(text, "cell", "limit", "'parabola limit=NUMBER' or 'linear'"))
+from .table import Table
 
 
 def curvatures(x: Array, h: Array, limit: float) -> Array:
@@ -115,7 +84,7 @@ def _slope(d: Array, c: Array, f: Array) -> Array:
     return d + c * (1 - 2 * f)
 
 
-def cells(table: "Table", theta_r: Array) -> Cells:
+def cells(table: Table, theta_r: Array) -> Cells:
     """The blended cells at theta_r (n,); theta_r outside the table's range is clamped, NaN to its low end."""
     low, high = table.theta_r_range
     last = table.height - 1
@@ -129,7 +98,7 @@ def cells(table: "Table", theta_r: Array) -> Cells:
     return Cells(h, *((1 - t) * part[j] + t * part[j + 1] for part in parts))
 
 
-def sample(table: "Table", theta_r: Array, u: Array) -> tuple[Array, Array]:
+def sample(table: Table, theta_r: Array, u: Array) -> tuple[Array, Array]:
     """(angle, density) drawn at theta_r (n,) with the numbers u (n,); u is clamped to [0, 1]."""
     theta_r, u = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(u))
     u = np.clip(u.astype(float), 0.0, 1.0)
@@ -137,7 +106,7 @@ def sample(table: "Table", theta_r: Array, u: Array) -> tuple[Array, Array]:
     return sample_tail(table, theta_r, np.where(upper, 1 - u, u), upper)
 
 
-def sample_tail(table: "Table", theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
+def sample_tail(table: Table, theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
     """As sample, for u = m, or u = 1 - m where upper; all (n,). Both tails keep the precision of m."""
     read = cells(table, theta_r)
     i, f = table.warp.place(m, upper, table.width)
@@ -145,7 +114,7 @@ def sample_tail(table: "Table", theta_r: Array, m: Array, upper: Array) -> tuple
     return read.angle_at(n, i, f), read.h[i] / read.slope_at(n, i, f)
 
 
-def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Array, Array]:
+def locate(table: Table, theta_r: Array, x: Array) -> tuple[Array, Array, Array, Array]:
     """(cell i, its width h in u, fraction f, slope dx/df), each (n,), at which x (n,) lies; x is clamped to
     the row's ends."""
     read = cells(table, theta_r)
@@ -153,7 +122,7 @@ def locate(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array, Arra
     return i, read.h[i], *read.fraction_at(np.arange(len(i)), i, x)
 
 
-def pdf(table: "Table", theta_r: Array, x: Array) -> Array:
+def pdf(table: Table, theta_r: Array, x: Array) -> Array:
     """(n,) density, per rad, with which sample draws x (n,) at theta_r (n,); 0 outside the domain."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
     _, h, _, slope = locate(table, theta_r, np.nan_to_num(x))
@@ -161,13 +130,13 @@ def pdf(table: "Table", theta_r: Array, x: Array) -> Array:
     return np.where((x >= low) & (x <= high), h / slope, 0.0)
 
 
-def invert(table: "Table", theta_r: Array, x: Array) -> Array:
+def invert(table: Table, theta_r: Array, x: Array) -> Array:
     """(n,) the numbers u from which sample draws x (n,) at theta_r (n,)."""
     m, upper = invert_tail(table, theta_r, x)
     return np.where(upper, 1 - m, m)
 
 
-def invert_tail(table: "Table", theta_r: Array, x: Array) -> tuple[Array, Array]:
+def invert_tail(table: Table, theta_r: Array, x: Array) -> tuple[Array, Array]:
     """(m, upper), each (n,): u = m, or u = 1 - m where upper."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
     i, h, f, _ = locate(table, theta_r, x)

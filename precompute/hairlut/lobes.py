@@ -21,6 +21,19 @@ LogDensity = Callable[[Array, Array], Array]
 Moments = Callable[[Array], tuple[Array, Array]]
 Breakpoints = tuple[float, ...] | Callable[[Array], Array]
 
+TABLES = DIRECT_THETA, DIRECT_PHI, MULTIPLE_THETA = "direct_theta", "direct_phi", "multiple_theta"
+LOBES = DIRECT, MULTIPLE = "direct", "multiple"
+AZIMUTHS = DIFFERENCE, SUM = "difference", "sum"  # what phi is: phi_i - phi_r, phi_i + phi_r
+NO_AZIMUTH = "none"
+
+_INCLINATION = {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)}
+SPACE = {
+    DIRECT_THETA: _INCLINATION,
+    DIRECT_PHI: {"angle": "phi", "domain": (0.0, 2 * np.pi)},
+    MULTIPLE_THETA: _INCLINATION,
+}
+"""The angle of each table and the range of it that the table spans, rad."""
+
 
 @dataclass(frozen=True)
 class Lobe:
@@ -104,42 +117,40 @@ def _multiple_theta(theta_r: Array) -> tuple[Array, Array]:
     return mu - theta_r, theta_r**4 / 20 + 0.49
 
 
-_INCLINATION = {"angle": "theta_i", "azimuth": "none", "domain": (-HALF_PI, HALF_PI)}
-
-
 def _model(name: str, azimuth: str, direct_theta: Moments, mean_text: str) -> Model:
-    relative = {"sum": "phi_i + phi_r", "difference": "phi_i - phi_r"}[azimuth]
+    relative = {SUM: "phi_i + phi_r", DIFFERENCE: "phi_i - phi_r"}[azimuth]
     return Model(
         name,
         gaussian(
             direct_theta,
             model=name,
-            name="direct_theta",
-            **_INCLINATION,
+            name=DIRECT_THETA,
+            azimuth=NO_AZIMUTH,
+            **SPACE[DIRECT_THETA],
             formula=f"Gaussian of theta_i; mean = {mean_text} - theta_r; sigma = 0.29",
         ),
         gaussian(
             _direct_phi,
             model=name,
-            name="direct_phi",
-            angle="phi",
+            name=DIRECT_PHI,
             azimuth=azimuth,
-            domain=(0.0, 2 * np.pi),
+            **SPACE[DIRECT_PHI],
             formula=f"Gaussian of phi = {relative} modulo 2 pi; mean = pi; sigma = theta_r^4 / 4 + 0.59",
         ),
         gaussian(
             _multiple_theta,
             model=name,
-            name="multiple_theta",
-            **_INCLINATION,
+            name=MULTIPLE_THETA,
+            azimuth=NO_AZIMUTH,
+            **SPACE[MULTIPLE_THETA],
             formula="Gaussian of theta_i; mean = (33.5 sin(1.25 theta_r) - 1) * pi/180 - theta_r; "
             "sigma = theta_r^4 / 20 + 0.49",
         ),
     )
 
 
-PRINTED = _model("printed", "sum", _printed_direct_theta, "(3 theta_r - 2 * pi/180)")
-FITTED = _model("fitted", "difference", _fitted_direct_theta, "(3 theta_r - 2) * pi/180")
+PRINTED = _model("printed", SUM, _printed_direct_theta, "(3 theta_r - 2 * pi/180)")
+FITTED = _model("fitted", DIFFERENCE, _fitted_direct_theta, "(3 theta_r - 2) * pi/180")
 MODELS = {model.name: model for model in (PRINTED, FITTED)}
 
 

@@ -50,27 +50,19 @@ from scipy.interpolate import PchipInterpolator
 from . import lobes
 from .errors import HairlutError
 from .lobecheck import check_lobe
-from .lobes import HALF_PI, MODELS, Lobe, Model
+from .lobes import AZIMUTHS, DIFFERENCE, MODELS, NO_AZIMUTH, SPACE, TABLES, Lobe, Model
 from .tabulated import TabulatedDensity
 
-LOBE_NAMES = ("direct_theta", "direct_phi", "multiple_theta")
-AZIMUTHS = ("difference", "sum")
 SUFFIXES = (".py", ".toml", ".npz")
 
 KEPT = 16  # tabulated lobes: more than lie between two uses of the same one in a family
 
-_SPACE = {
-    "direct_theta": {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)},
-    "direct_phi": {"angle": "phi", "domain": (0.0, 2 * np.pi)},
-    "multiple_theta": {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)},
-}
-
 
 def _space(name: str) -> dict:
     """What a lobe's name says; its model and azimuth are filled in when the file has been read."""
-    if name not in _SPACE:
-        raise HairlutError(f"lobe {name!r} is not known: expected one of {', '.join(LOBE_NAMES)}")
-    return {"model": "", "name": name, "azimuth": "none", **_SPACE[name]}
+    if name not in SPACE:
+        raise HairlutError(f"lobe {name!r} is not known: expected one of {', '.join(TABLES)}")
+    return {"model": "", "name": name, "azimuth": NO_AZIMUTH, **SPACE[name]}
 
 
 def gaussian(name: str, mean, sigma, formula: str = "") -> Lobe:
@@ -78,7 +70,7 @@ def gaussian(name: str, mean, sigma, formula: str = "") -> Lobe:
     mean_of, sigma_of = _function(mean), _function(sigma)
     return lobes.gaussian(
         lambda theta_r: (mean_of(theta_r), sigma_of(theta_r)),
-        formula=formula or f"Gaussian of {_SPACE.get(name, {}).get('angle', name)}, from a model file",
+        formula=formula or f"Gaussian of {SPACE.get(name, {}).get('angle', name)}, from a model file",
         **_space(name),
     )
 
@@ -108,7 +100,7 @@ def density(
 def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
     """A lobe given as masses of cells (tabulated.TabulatedDensity); the edges must span the domain."""
     table = _of_masses(name, *(_as_bytes(values) for values in (edges, theta_r, mass)))
-    low, high = _SPACE.get(name, _space(name))["domain"]
+    low, high = SPACE.get(name, _space(name))["domain"]
     if abs(table.edges[0] - low) > 1e-9 or abs(table.edges[-1] - high) > 1e-9:
         raise HairlutError(
             f"{name}: the cells' edges run from {table.edges[0]:.6g} to {table.edges[-1]:.6g}, "
@@ -186,17 +178,17 @@ def inputs(path: Path) -> list[Path]:
 def assemble(name: str, given: Sequence[Lobe], azimuth: str, where: str) -> Model:
     """A model of the three lobes; HairlutError if one is missing or there twice."""
     names = [lobe.name for lobe in given]
-    if sorted(names) != sorted(LOBE_NAMES):
+    if sorted(names) != sorted(TABLES):
         raise HairlutError(
-            f"{where}: lobes {', '.join(names) or 'none'}: expected one each of {', '.join(LOBE_NAMES)}"
+            f"{where}: lobes {', '.join(names) or 'none'}: expected one each of {', '.join(TABLES)}"
         )
     if azimuth not in AZIMUTHS:
         raise HairlutError(f"{where}: azimuth {azimuth!r}: expected one of {', '.join(AZIMUTHS)}")
     named = {
-        lobe.name: replace(lobe, model=name, azimuth=azimuth if lobe.angle == "phi" else "none")
+        lobe.name: replace(lobe, model=name, azimuth=azimuth if lobe.angle == "phi" else NO_AZIMUTH)
         for lobe in given
     }
-    return Model(name, *(named[key] for key in LOBE_NAMES))
+    return Model(name, *(named[key] for key in TABLES))
 
 
 # ---- Python
@@ -219,7 +211,7 @@ def _from_python(path: Path) -> tuple[Sequence[Lobe], str]:
     given = getattr(module, "LOBES", None)
     if not isinstance(given, (tuple, list)) or not all(isinstance(lobe, Lobe) for lobe in given):
         raise HairlutError(f"{path}: expected LOBES, a tuple of gaussian(), density() or tabulated()")
-    return given, getattr(module, "AZIMUTH", "difference")
+    return given, getattr(module, "AZIMUTH", DIFFERENCE)
 
 
 def _line(error: Exception, path: Path) -> str:
@@ -239,7 +231,7 @@ def _from_toml(path: Path) -> tuple[Sequence[Lobe], str]:
         raise HairlutError(f"{path}: {error}") from None
     tables = {key: value for key, value in document.items() if isinstance(value, dict)}
     given = [_gaussian_of_numbers(f"{path}: {name}", name, table) for name, table in tables.items()]
-    return given, document.get("azimuth", "difference")
+    return given, document.get("azimuth", DIFFERENCE)
 
 
 def _gaussian_of_numbers(where: str, name: str, table: dict) -> Lobe:
@@ -289,7 +281,7 @@ def _through(where: str, theta_r: np.ndarray, values: np.ndarray) -> Callable:
 def _from_npz(path: Path) -> tuple[Sequence[Lobe], str]:
     with np.load(path, allow_pickle=False) as arrays:
         missing = [
-            f"{n}.{k}" for n in LOBE_NAMES for k in ("edges", "theta_r", "mass") if f"{n}.{k}" not in arrays
+            f"{n}.{k}" for n in TABLES for k in ("edges", "theta_r", "mass") if f"{n}.{k}" not in arrays
         ]
         if missing:
             raise HairlutError(
@@ -298,8 +290,8 @@ def _from_npz(path: Path) -> tuple[Sequence[Lobe], str]:
         try:
             given = [
                 tabulated(n, arrays[f"{n}.edges"], arrays[f"{n}.theta_r"], arrays[f"{n}.mass"])
-                for n in LOBE_NAMES
+                for n in TABLES
             ]
         except HairlutError as error:
             raise HairlutError(f"{path}: {error}") from None
-        return given, str(arrays["azimuth"]) if "azimuth" in arrays else "difference"
+        return given, str(arrays["azimuth"]) if "azimuth" in arrays else DIFFERENCE

@@ -20,9 +20,9 @@ from functools import cache, partial
 
 import numpy as np
 
+from .cell import Cell
 from .errors import HairlutError
 from .exact import Exact, exact_at
-from .interpolant import Cell
 from .invert import ALL
 from .lobes import Lobe
 from .measure import BETWEEN, ON_ROWS, Errors, estimate, inclinations, measure, narrowest_cell

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .cell import Cell
 from .errors import HairlutError
 from .exact import Exact, exact_at
-from .interpolant import Cell
 from .invert import ALL
 from .lobes import Array, Lobe
 from .warp import Warp

@@ -13,8 +13,7 @@ import numpy as np
 from . import exr, manifest
 from .errors import HairlutError
 from .exact import exact_at
-from .export import TABLES
-from .lobes import MODELS, Array, Lobe, Model
+from .lobes import MODELS, TABLES, Array, Lobe, Model
 from .measure import ON_ROWS, Errors, inclinations, measure
 from .modelfile import load
 from .table import Table

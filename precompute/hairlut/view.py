@@ -12,7 +12,7 @@ from .axis import axis_numbers
 from .errors import HairlutError
 from .export import read_model
 from .files import write_whole
-from .lobes import MODELS
+from .lobes import MODELS, SUM
 from .measure import Errors, measure
 from .size import table_of_size
 from .table import Table
@@ -68,7 +68,7 @@ def model_data(shipped: Sequence[Table], sizes: Sequence[int]) -> dict:
 
 def _model(shipped: Sequence[Table], chosen: dict[str, list[tuple[Table, Errors | None]]]) -> dict:
     sizes = {size: [_table(table, errors) for table, errors in tables] for size, tables in chosen.items()}
-    return {"azimuth": int(shipped[1].azimuth == "sum"), "sizes": sizes}
+    return {"azimuth": int(shipped[1].azimuth == SUM), "sizes": sizes}
 
 
 def _table(table: Table, errors: Errors | None) -> dict:

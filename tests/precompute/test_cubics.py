@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from hairlut import modelfile
+from hairlut.cell import Cell
 from hairlut.cubics import Cubics
 from hairlut.exact import Exact, exact_at
-from hairlut.interpolant import Cell
 from hairlut.lobes import HALF_PI
 from hairlut.measure import estimate, measure
 from hairlut.table import tabulate

@@ -8,6 +8,7 @@ import pytest
 
 from hairlut import export, exr, interpolant
 from hairlut.errors import HairlutError
+from hairlut.lobes import TABLES
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +26,7 @@ def array(source, table, part):
     """(H+1, n) the numbers of one of a table's arrays."""
     entry = source[source.index(f'{{"{table.model}",') :]
     axes = re.findall(r"HAIRLUT_AXIS\((\w+)_rows, (\w+)_cells, ", entry)[:3]
-    rows, cells = axes[export.TABLES.index(table.name)]
+    rows, cells = axes[TABLES.index(table.name)]
     assert rows == cells
     text = re.search(rf"static const float [\w ]*{rows}_{part}\[.*?\] = \{{\n(.*?)\}};", source, re.DOTALL)[1]
     return np.array([floats(line) for line in text.split("\n")])

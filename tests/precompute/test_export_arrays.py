@@ -10,7 +10,8 @@ from hairlut.arrays import read_raw
 from hairlut.axis import AXIS
 from hairlut.cli import main
 from hairlut.errors import HairlutError
-from hairlut.export import TABLES, table_files
+from hairlut.export import table_files
+from hairlut.lobes import TABLES
 
 
 def run(*args) -> int:

@@ -9,8 +9,8 @@ import OpenEXR
 import pytest
 
 from hairlut import exr
+from hairlut.cell import Cell
 from hairlut.errors import HairlutError
-from hairlut.interpolant import Cell
 from hairlut.lobes import FITTED, PRINTED
 from hairlut.table import bake_table
 from hairlut.warp import Warp

@@ -14,6 +14,7 @@ from hairlut.fit.decompose import mixture
 from hairlut.fit.distribution import of_grid, of_samples, read
 from hairlut.fit.files import write_all
 from hairlut.fit.model import fit
+from hairlut.lobes import TABLES
 
 MEASURED = "precompute/examples/measured.toml"
 DRAWS = 40_000  # for each theta_r
@@ -154,9 +155,7 @@ def test_baked_tables_cost_what_the_fit_promised(grid, tmp_path):
     masses, _, _ = write_all(found, tmp_path, "two")
     assert cli.main(["bake", "--model", str(masses), "--size", "96x37", "--out", str(tmp_path)]) == cli.OK
     cells = []
-    for name, edges in zip(
-        modelfile.LOBE_NAMES, (data.theta_edges, data.phi_edges, data.theta_edges), strict=True
-    ):
+    for name, edges in zip(TABLES, (data.theta_edges, data.phi_edges, data.theta_edges), strict=True):
         table, _ = exr.read(tmp_path / masses.stem / f"{name}.exr")
         u = np.stack([interpolant.invert(table, np.full(edges.size, t), edges) for t in data.theta_r])
         u[:, 0], u[:, -1] = 0.0, 1.0

@@ -7,9 +7,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hairlut import analytic
+from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.integrate import integrate, rows_of_lobe
-from hairlut.interpolant import Cell
 from hairlut.lobes import HALF_PI, PRINTED, gaussian
 from hairlut.table import bake_table, row_angles
 from hairlut.warp import Warp

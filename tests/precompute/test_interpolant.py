@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hairlut import analytic, interpolant
+from hairlut.cell import Cell
 from hairlut.errors import HairlutError
-from hairlut.interpolant import Cell
 from hairlut.lobes import FITTED, HALF_PI, MODELS
 from hairlut.table import Table, bake_table
 from hairlut.warp import Warp

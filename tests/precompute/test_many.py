@@ -10,6 +10,7 @@ import pytest
 
 from hairlut import batch_bake, cli, exr, manifest, modelfile, size
 from hairlut.errors import HairlutError
+from hairlut.lobes import TABLES
 
 HAIR = """
 from hairlut.modelfile import gaussian
@@ -50,7 +51,7 @@ def test_one_failing_model_does_not_stop_the_others(hairs, tmp_path):
     assert "name 'undefined' is not defined" in done.stderr
     assert "Traceback" not in done.stderr
     for name in ("brown", "grey"):
-        for table in modelfile.LOBE_NAMES:
+        for table in TABLES:
             assert exr.read(tmp_path / "out" / name / f"{table}.exr")[0].model == name
     assert not (tmp_path / "out" / "broken").exists()
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from hairlut import analytic, interpolant
-from hairlut.interpolant import Cell
+from hairlut.cell import Cell
 from hairlut.lobes import FITTED, PRINTED
 from hairlut.measure import flat_cells, inclinations, measure, narrowest_cell
 from hairlut.table import Table, bake_table

@@ -6,6 +6,7 @@ import pytest
 from hairlut import cli, exr, modelfile
 from hairlut.errors import HairlutError
 from hairlut.lobecheck import find_jump
+from hairlut.lobes import TABLES
 
 GOOD = """
 import numpy as np
@@ -249,7 +250,7 @@ def test_bake_writes_a_model_that_reads_back(tmp_path):
         )
         == cli.OK
     )
-    for name in modelfile.LOBE_NAMES:
+    for name in TABLES:
         table, errors = exr.read(tmp_path / "out" / "hair" / f"{name}.exr")
         assert (table.model, table.name, table.width, table.height) == (
             "hair",

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from hairlut import exr, figures
+from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.half import as_half
-from hairlut.interpolant import Cell
 from hairlut.lobes import FITTED
 from hairlut.measure import Errors, flat_cells, measure, narrowest_cell
 from hairlut.size import CELL, EXPONENTS, MIN_STEPS, table_of_size

@@ -14,10 +14,10 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 
+from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.exact import Exact
 from hairlut.integrate import integrate, rows_of_lobe
-from hairlut.interpolant import Cell
 from hairlut.invert import invert
 from hairlut.lobes import FITTED, HALF_PI, PRINTED, Array, Lobe
 from hairlut.measure import Errors, flat_cells, inclinations, measure, narrowest_cell

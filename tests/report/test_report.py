@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hairlut import exr
+from hairlut.cell import Cell
 from hairlut.errors import HairlutError
-from hairlut.interpolant import Cell
 from hairlut.lobes import FITTED, MODELS
 from hairlut.warp import Warp
 from report import bake_speed, markdown, study, timing

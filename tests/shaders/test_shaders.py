@@ -19,7 +19,7 @@ from shaders.agreement import (
 )
 from shaders.backends import BACKENDS, Scene
 
-from hairlut.interpolant import Cell
+from hairlut.cell import Cell
 from hairlut.lobes import find_model
 from hairlut.table import bake_table
 from hairlut.warp import Warp

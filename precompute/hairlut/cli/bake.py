@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from .. import batch_bake, exr, half, manifest, modelfile, size
+from ..cell import Cell
 from ..errors import HairlutError
-from ..interpolant import Cell
 from ..lobecheck import find_jump
 from ..lobes import MODELS, Lobe, Model
 from ..measure import measure

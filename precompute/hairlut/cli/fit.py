@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import HairlutError
-from ..fit.decompose import LOBES
+from ..fit.decompose import PARTS
 from ..fit.distribution import CELLS, ROWS
 from ..fit.family import LOBES as FAMILY_LOBES
 from ..fit.family import SHAPES
@@ -21,7 +21,7 @@ the data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg 
 CSV, or arrays of these names as npz. A full grid of value is a density; anything else is samples, weighed
 by value. An npz with an array offset (increasing, in [-1, 1]: where across its width the fibre is hit) and a
 value of four axes (offset, theta_r, theta_i, phi) becomes a family: a model file for each lobe, and a text
-file of their weights and turns, in a directory (see the module hairlut.familyfiles)."""
+file of their weights and turns, in a directory (see the module hairlut.fit.familyfiles)."""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
@@ -42,7 +42,7 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         default="angle",
         help="what a grid's values are densities in: theta_i and phi, or steradians (default: angle)",
     )
-    parser.add_argument("--lobes", choices=LOBES, default="both", help="what the data holds (default: both)")
+    parser.add_argument("--lobes", choices=PARTS, default="both", help="what the data holds (default: both)")
     parser.add_argument(
         "--rows",
         type=int,

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..lobes import Array
+from ..lobes import DIRECT, LOBES, MULTIPLE, TABLES, Array
 from ..tabulated import FLOOR
 from .distribution import Distribution
 
-LOBES = ("both", "direct", "multiple")
+PARTS = ("both", *LOBES)
 MAX_STEPS = 400
 ENOUGH = 1e-7  # gain of the mean log-likelihood in a step
 NEGLIGIBLE = 0.01
@@ -39,6 +39,11 @@ class Split:
     direct_theta: Array
     direct_phi: Array
     multiple_theta: Array
+
+    def tables(self, data: Distribution) -> tuple[tuple[str, Array, Array], ...]:
+        """(name, masses, edges of the cells) of each table."""
+        edges = data.theta_edges, data.phi_edges, data.theta_edges
+        return tuple((name, getattr(self, name), each) for name, each in zip(TABLES, edges, strict=True))
 
     def drawn(self, data: Distribution, floor: float = FLOOR) -> Array:
         """(J, n, m) masses of the cells that tables of this split draw, their floor included."""
@@ -71,9 +76,9 @@ def decompose(
 ) -> Split:
     """The most probable split. report(share) is called with the share of the work done."""
     whole = marginals(data)
-    if lobes == "direct":
+    if lobes == DIRECT:
         return whole
-    if lobes == "multiple":
+    if lobes == MULTIPLE:
         flat = np.tile(data.even, (len(data.theta_r), 1))
         return Split(0.0, whole.direct_theta, flat, whole.direct_theta)
     split = _start(whole, data.even)
@@ -87,7 +92,7 @@ def decompose(
     report(1.0)
     if split.direct_weight > 1 - NEGLIGIBLE:
         return whole
-    return decompose(data, "multiple") if split.direct_weight < NEGLIGIBLE else split
+    return decompose(data, MULTIPLE) if split.direct_weight < NEGLIGIBLE else split
 
 
 def _start(whole: Split, even: Array) -> Split:

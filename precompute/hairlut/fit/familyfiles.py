@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from ..files import write_whole
-from ..lobes import HALF_PI, Array
+from ..lobes import DIFFERENCE, DIRECT_PHI, DIRECT_THETA, HALF_PI, MULTIPLE_THETA, Array
 from .family import Family
 
 NAME = "family.txt"
@@ -69,9 +69,9 @@ def _numbers(values) -> str:
 def _npz(family: Family, theta: Array, phi: Array) -> bytes:
     one = family.data.at[0]
     lobes = {
-        "direct_theta": (one.theta_edges, one.theta_r, theta),
-        "direct_phi": (one.phi_edges, one.theta_r, phi),
-        "multiple_theta": (np.array([-HALF_PI, HALF_PI]), np.zeros(1), np.ones((1, 1))),
+        DIRECT_THETA: (one.theta_edges, one.theta_r, theta),
+        DIRECT_PHI: (one.phi_edges, one.theta_r, phi),
+        MULTIPLE_THETA: (np.array([-HALF_PI, HALF_PI]), np.zeros(1), np.ones((1, 1))),
     }
     arrays = {
         f"{name}.{part}": values
@@ -79,7 +79,7 @@ def _npz(family: Family, theta: Array, phi: Array) -> bytes:
         for part, values in zip(("edges", "theta_r", "mass"), lobe, strict=True)
     }
     file = BytesIO()
-    np.savez_compressed(file, azimuth=np.array("difference"), **arrays)
+    np.savez_compressed(file, azimuth=np.array(DIFFERENCE), **arrays)
     return file.getvalue()
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..files import write_whole
-from ..lobes import Array
+from ..lobes import DIFFERENCE, DIRECT_PHI, Array
 from .model import FAILS, Fit, GaussianFit
 
 ROW_STEP = 5.0
@@ -38,17 +38,9 @@ def write_all(fit: Fit, folder: Path, name: str) -> tuple[Path, Path, Path]:
 
 def _npz(fit: Fit) -> bytes:
     data, split = fit.data, fit.split
-    arrays = {"azimuth": np.array("difference"), "direct_weight": np.array(split.direct_weight)}
-    for name, edges in (
-        ("direct_theta", data.theta_edges),
-        ("direct_phi", data.phi_edges),
-        ("multiple_theta", data.theta_edges),
-    ):
-        arrays |= {
-            f"{name}.edges": edges,
-            f"{name}.theta_r": data.theta_r,
-            f"{name}.mass": getattr(split, name),
-        }
+    arrays = {"azimuth": np.array(DIFFERENCE), "direct_weight": np.array(split.direct_weight)}
+    for name, mass, edges in split.tables(data):
+        arrays |= {f"{name}.edges": edges, f"{name}.theta_r": data.theta_r, f"{name}.mass": mass}
     file = BytesIO()
     np.savez_compressed(file, **arrays)
     return file.getvalue()
@@ -63,11 +55,11 @@ def toml(fit: Fit) -> str:
         "# Gaussians fitted by hairlut fit; bake with: hairlut bake --model THIS_FILE",
         f"# draw from the direct lobes with probability {fit.split.direct_weight:.4g}",
         "",
-        'azimuth = "difference"',
+        f'azimuth = "{DIFFERENCE}"',
     ]
     for gaussian in fit.gaussians:
         lines += ["", f"[{gaussian.name}]", *_polynomials(gaussian), f"theta_r_deg = {_numbers(theta_r)}"]
-        key = "mean_deg" if gaussian.name == "direct_phi" else "shift_deg"
+        key = "mean_deg" if gaussian.name == DIRECT_PHI else "shift_deg"
         sigma = np.exp(np.polyval(gaussian.log_sigma, np.radians(theta_r)))
         lines += [
             f"{key} = {_numbers(np.degrees(np.polyval(gaussian.centre, np.radians(theta_r))))}",
@@ -77,7 +69,7 @@ def toml(fit: Fit) -> str:
 
 
 def _polynomials(gaussian: GaussianFit) -> list[str]:
-    what = "phi" if gaussian.name == "direct_phi" else "theta_i + theta_r"
+    what = "phi" if gaussian.name == DIRECT_PHI else "theta_i + theta_r"
     return [
         f"# mean of {what} [rad] = {_formula(gaussian.centre)}",
         f"# log(sigma / rad) = {_formula(gaussian.log_sigma)}, theta_r in rad",

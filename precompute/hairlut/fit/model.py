@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import ndtr
 
-from ..lobes import Array
+from ..lobes import DIRECT_PHI, Array
 from .decompose import Split, decompose, marginals
 from .distribution import Distribution
 
@@ -83,11 +83,7 @@ def fit(
 ) -> Fit:
     """Fits both kinds of model. report(stage, share done) is called now and then."""
     split = decompose(data, lobes, lambda share: report("splitting into direct and multiple", share))
-    parts = (
-        ("direct_theta", split.direct_theta, data.theta_edges),
-        ("direct_phi", split.direct_phi, data.phi_edges),
-        ("multiple_theta", split.multiple_theta, data.theta_edges),
-    )
+    parts = split.tables(data)
     gaussians = []
     for k, (name, mass, edges) in enumerate(parts):
         report("fitting Gaussians", k / len(parts))
@@ -127,7 +123,7 @@ def fit_gaussians(
     """Least squares of a cut Gaussian to each row of masses (J, n), then polynomials through the rows."""
     rows = np.array([_fit_row(edges, row) for row in mass])
     row_mean, log_sigma, mean_error, sigma_error = rows.T
-    moving = theta_r if name != "direct_phi" else 0.0
+    moving = theta_r if name != DIRECT_PHI else 0.0
     centre = _polynomial(theta_r, row_mean + moving, mean_error, degree)
     width = _polynomial(theta_r, log_sigma, sigma_error, degree)
     mean, sigma = np.polyval(centre, theta_r) - moving, np.exp(np.polyval(width, theta_r))

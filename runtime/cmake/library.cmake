@@ -1,16 +1,30 @@
 # One library in its two forms, from sources compiled once.
 
-# hairlut_library(NAME MACRO SOURCES...): NAME_shared and NAME_static, with the aliases that consumers use
+# Arithmetic as written: one rounding an operation, NaN and infinity kept, also in a project that compiles with -ffast-math,
+# whose flags come before these. What compares floats for equality means it.
+set(hairlut_gnu_options -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wno-float-equal
+    -fno-fast-math -fno-unsafe-math-optimizations -fno-finite-math-only -fno-math-errno -ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "i.86|^x86$" OR (CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND CMAKE_SIZEOF_VOID_P EQUAL 4))
+    list(APPEND hairlut_gnu_options -msse2 -mfpmath=sse)
+endif()
+if(NOT PROJECT_IS_TOP_LEVEL) # an including project's -Werror is for its own sources
+    list(APPEND hairlut_gnu_options -Wno-error)
+endif()
+set(hairlut_msvc_options /W4 /fp:precise)
+
+# hairlut_library(NAME MACRO): NAME_shared and NAME_static of the sources of the list, with the aliases that consumers use
 function(hairlut_library name building)
-    add_library(${name}_objects OBJECT ${ARGN})
+    hairlut_sources(${name} sources)
+    add_library(${name}_objects OBJECT ${sources})
     add_library(${name}_shared SHARED $<TARGET_OBJECTS:${name}_objects>)
     add_library(${name}_static STATIC $<TARGET_OBJECTS:${name}_objects>)
     target_compile_definitions(${name}_objects PRIVATE ${building})
     set_target_properties(${name}_objects PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF C_VISIBILITY_PRESET hidden
         POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${name}_objects PRIVATE
-        $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow
-            -fno-math-errno -ffp-contract=off>)
+        "$<$<C_COMPILER_ID:GNU,Clang,AppleClang>:${hairlut_gnu_options}>" "$<$<C_COMPILER_ID:MSVC>:${hairlut_msvc_options}>")
+    target_link_options(${name}_shared PRIVATE # else gcc links what makes the whole program flush denormals
+        $<$<C_COMPILER_ID:GNU>:-fno-fast-math>)
     string(REPLACE "hairlut_" "" alias ${name})
     foreach(form objects shared static)
         target_include_directories(${name}_${form} PUBLIC
@@ -45,12 +59,4 @@ function(hairlut_link name library)
     target_link_libraries(${name}_objects PRIVATE ${library})
     target_link_libraries(${name}_shared PRIVATE ${library})
     target_link_libraries(${name}_static PRIVATE ${library})
-endfunction()
-
-# hairlut_instruction_set(SUFFIX PROCESSORS FLAGS...): compiles src/*_SUFFIX.c with the flags where the target has the set
-function(hairlut_instruction_set suffix processors)
-    file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} src/*_${suffix}.c)
-    if(CMAKE_SYSTEM_PROCESSOR MATCHES "${processors}" AND CMAKE_C_COMPILER_ID MATCHES "GNU|Clang" AND sources)
-        set_source_files_properties(${sources} DIRECTORY ${PROJECT_SOURCE_DIR} PROPERTIES COMPILE_OPTIONS "${ARGN}")
-    endif()
 endfunction()

@@ -1,30 +1,15 @@
 /* The _n functions: the widest kernels that the processor and the operating system run. */
 #include "batch.h"
-
-#ifdef HAIRLUT_BATCH_X86
-static int runs_avx2(void)
-{
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
-}
-
-/* From Ice Lake and Zen 4 on: those have VBMI2, which no kernel needs. The AVX-512 processors before them lower their clock for
- * vectors of 512 bits, also for what the engine runs next. */
-static int runs_avx512(void)
-{
-    return runs_avx2() && __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("avx512f")
-           && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")
-           && __builtin_cpu_supports("avx512vbmi2");
-}
-#endif
+#include "cpu.h"
 
 const hairlut_batch *hairlut_batch_level(int level)
 {
     if (level == 0)
         return &hairlut_batch_portable;
 #ifdef HAIRLUT_BATCH_X86
-    if (level == 1 && runs_avx2())
+    if (level == 1 && hairlut_this_cpu() >= HAIRLUT_CPU_AVX2)
         return &hairlut_batch_avx2;
-    if (level == 2 && runs_avx512())
+    if (level == 2 && hairlut_this_cpu() >= HAIRLUT_CPU_AVX512)
         return &hairlut_batch_avx512;
 #endif
 #ifdef HAIRLUT_BATCH_NEON
@@ -34,7 +19,6 @@ const hairlut_batch *hairlut_batch_level(int level)
     return NULL;
 }
 
-/* A few loads and tests of what the C runtime found out when it started: no state of our own. */
 const hairlut_batch *hairlut_batch_widest(void)
 {
     const hairlut_batch *batch = hairlut_batch_level(0);

@@ -3,10 +3,11 @@
 #define HAIRLUT_BATCH_H
 
 #include "hairlut.h"
+#include "platform.h"
 
-#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
+#if defined(HAIRLUT_X86)
 #define HAIRLUT_BATCH_X86 1
-#elif defined(__aarch64__) || defined(_M_ARM64)
+#elif defined(HAIRLUT_ARM64)
 #define HAIRLUT_BATCH_NEON 1
 #endif
 

@@ -5,6 +5,7 @@
 #include <float.h>
 
 #include "hairlut.h"
+#include "platform.h"
 
 /* A stored table is its rows, which find the cell of an angle, and its cells, which a sample and a density are taken from.
  * Both repeat the last row, so that theta_r at the end of its range has a row above it.

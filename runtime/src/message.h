@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "hairlut.h"
+#include "platform.h"
 
 #if defined(__GNUC__)
 #define HAIRLUT_PRINTF(text, first) __attribute__((format(printf, text, first)))

@@ -7,31 +7,25 @@ from pathlib import Path
 from runtime.c_library import BUILD, RUNTIME, run
 
 SOURCE = RUNTIME / "src"
-CORE = (
-    "sample",
-    "density",
-    "mixture",
-    "frame",
-    "model",
-    "builtin",
-    "builtin_tables",
-    "batch",
-    "batch_mixture",
-    "batch_portable",
-)
-# kernels, with what they are compiled with besides
-X86 = {
-    "avx2": ["-mavx2", "-mbmi2"],
-    "avx512": [
-        "-mavx512f",
-        "-mavx512bw",
-        "-mavx512dq",
-        "-mavx512vl",
-        "-mbmi2",
-        "-mpopcnt",
-    ],
-}
-NEON = {"neon": []}
+
+
+def listed(library: str) -> list[tuple[Path, str, list[str]]]:
+    """(file, processor or "", flags) of a library's sources, from the list that CMake reads."""
+    lines = (line.split() for line in (SOURCE / "sources.txt").read_text().splitlines())
+    mine = [line[1:] for line in lines if line and line[0] == library]
+    assert mine, library
+    return [(SOURCE / file, "".join(rest[:1]), rest[1:]) for file, *rest in mine]
+
+
+def kernels_of(processor: str) -> dict[str, list[str]]:
+    """Kernels by name, with what they are compiled with besides."""
+    files = [(file.stem, flags) for file, owner, flags in listed("hairlut") if owner == processor]
+    return {stem.removeprefix("batch_"): flags for stem, flags in files}
+
+
+CORE = [file for file, processor, _ in listed("hairlut") if not processor]
+X86 = kernels_of("x86")
+NEON = kernels_of("arm64")
 HERE_RUN = NEON if platform.machine() in ("aarch64", "arm64") else X86
 INCLUDE = [f"-I{RUNTIME / 'include'}", f"-I{SOURCE}"]
 # the library's flags: no fused multiply-add, no errno
@@ -54,7 +48,7 @@ def compiled(name: str, program: Path, compiler: str, *flags: str, kernels=HERE_
     flags of their own besides; in build/tests/name."""
     folder = BUILD / "tests" / name
     folder.mkdir(parents=True, exist_ok=True)
-    units = [(SOURCE / f"{unit}.c", []) for unit in CORE]
+    units = [(file, []) for file in CORE]
     units += [(SOURCE / f"batch_{kernel}.c", extra) for kernel, extra in kernels.items()]
     units.append((program, []))
     objects = []

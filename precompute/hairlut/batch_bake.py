@@ -1,23 +1,18 @@
-"""Bakes a directory of model files in processes of their own, so that no model can stop another.
+"""Bakes a directory of model files, each in a process of its own: no model can stop or change another.
 
-Each process runs the command that bakes one model, `hairlut bake --model FILE --out DIR`, for one model after
-the other: a family's models share lobes, which it bakes once. A Python file has a process to itself, for its
-code could change what is baked after it. Nothing passes between processes but files, and textures do not
-depend on which process made them: a render farm's queue can run the same command for each file instead.
+Each process runs the command that bakes one model, `hairlut bake --model FILE --out DIR`. Nothing passes
+between processes but files, so a render farm's queue can run the same command for each file instead.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from queue import SimpleQueue
 from time import monotonic
 
 from .errors import HairlutError
@@ -27,6 +22,10 @@ from .modelfile import SUFFIXES
 
 UP_TO_DATE = "up to date"
 STATUSES = ("baked", UP_TO_DATE, "failed")
+
+# -P: import nothing from the working directory, which may hold a folder named hairlut
+COMMAND = (sys.executable, "-P", "-m", "hairlut.cli")
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 @dataclass(frozen=True)
@@ -81,76 +80,36 @@ def bake_many(
     sources: Sequence[Path],
     options: Sequence[str],
     jobs: int,
+    is_current: Callable[[Path], bool],
     report: Callable[[Outcome], None] = lambda outcome: None,
 ) -> list[Outcome]:
-    """Bakes each model file with these options of `hairlut bake`, `jobs` at a time; the outcomes in order."""
-    idle: SimpleQueue[_Worker] = SimpleQueue()
-
-    def bake(source: Path) -> Outcome:
-        worker = idle.get()
+    """Bakes each model file that is not current with these options of `hairlut bake`, `jobs` at a time; the
+    outcomes in order."""
+    with ThreadPoolExecutor(max_workers=jobs) as pool:
+        waiting = [pool.submit(_bake, source, options, is_current) for source in sources]
         try:
-            return worker.bake(source, options)
-        finally:
-            idle.put(worker)
-
-    with ExitStack() as stack, ThreadPoolExecutor(max_workers=jobs) as pool:
-        for _ in range(jobs):
-            worker = _Worker()
-            stack.callback(worker.close)
-            idle.put(worker)
-        waiting = [pool.submit(bake, source) for source in sources]
-        for done in as_completed(waiting):
-            report(done.result())
+            for done in as_completed(waiting):
+                report(done.result())
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     return [future.result() for future in waiting]
 
 
-class _Worker:
-    """A process of batch_worker.py, started when it is needed."""
-
-    def __init__(self) -> None:
-        self._process: subprocess.Popen | None = None
-
-    def bake(self, source: Path, options: Sequence[str]) -> Outcome:
-        start = monotonic()
-        if source.suffix == ".py":
-            self.close()
-        code, text = self._run(["bake", "--model", str(source), *options])
-        if source.suffix == ".py":
-            self.close()
-        status = "failed" if code else UP_TO_DATE if text.endswith(UP_TO_DATE) else "baked"
-        return Outcome(source, status, text, monotonic() - start)
-
-    def close(self) -> int:
-        """Ends the process, if there is one and it has not ended; its exit code."""
-        process, self._process = self._process, None
-        if not process:
-            return 0
-        process.communicate()
-        return process.returncode
-
-    def _run(self, command: list[str]) -> tuple[int, str]:
-        """(exit code, what was printed)"""
-        self._process = self._process or _start()
-        try:
-            self._process.stdin.write(json.dumps(command) + "\n")
-            self._process.stdin.flush()
-            answer = self._process.stdout.readline()
-        except BrokenPipeError:
-            answer = ""
-        if answer:
-            code, text = json.loads(answer)
-            return code, text.strip()
-        code = self.close()
-        return code or 1, f"no output, exit code {code}"
-
-
-def _start() -> subprocess.Popen:
-    one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    return subprocess.Popen(
-        [sys.executable, "-m", "hairlut.batch_worker"],
-        stdin=subprocess.PIPE,
+def _bake(source: Path, options: Sequence[str], is_current: Callable[[Path], bool]) -> Outcome:
+    """Runs the command for one model file, which reads nothing from the terminal."""
+    start = monotonic()
+    if is_current(source):
+        return Outcome(source, UP_TO_DATE, "", monotonic() - start)
+    done = subprocess.run(
+        [*COMMAND, "bake", "--model", str(source), *options],
+        stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
+        stderr=subprocess.STDOUT,
         text=True,
-        env=os.environ | one_thread,
+        errors="replace",
+        env=os.environ | ONE_THREAD,
+        check=False,
     )
+    text = done.stdout.strip() or f"no output, exit code {done.returncode}"
+    return Outcome(source, "failed" if done.returncode else "baked", text, monotonic() - start)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hairlut import azimuth
 from hairlut.lobes import HALF_PI, MODELS
 from hairlut.warp import Warp
+from precompute import azimuth
 
 THETA_R = np.linspace(-HALF_PI, HALF_PI, 9)
 PHI_R = np.linspace(-np.pi, np.pi, 25)

@@ -89,6 +89,24 @@ def test_a_process_that_ends_fails_its_model_alone(hairs, tmp_path):
     assert "no output, exit code 7" in done.stderr
 
 
+def test_a_folder_named_hairlut_beside_the_models_is_not_imported(hairs, tmp_path):
+    """As where the working directory is the parent of a clone."""
+    (tmp_path / "hairlut").mkdir()
+    (tmp_path / "hairlut" / "README.md").write_text("a clone")
+    (tmp_path / "numpy.py").write_text("raise SystemExit(9)")
+    program = Path(sys.executable).with_name("hairlut")
+    command = [program, "bake", "--model", "hairs", "--size", "16x8", "--out", "out", "--jobs", "2"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert "2 models: 2 baked, 0 up to date, 0 failed" in done.stdout, done.stderr
+
+
+def test_a_model_that_waits_for_an_answer_fails(hairs, tmp_path):
+    (hairs / "asks.py").write_text("input()\n")
+    done = bake(hairs, tmp_path / "out")
+    assert "3 models: 2 baked, 0 up to date, 1 failed" in done.stdout
+    assert "EOFError" in done.stderr
+
+
 def test_the_code_of_one_model_changes_no_other(hairs, tmp_path):
     spoils = "import hairlut.size\nhairlut.size.EXPONENTS = ()\n"
     (hairs / "a_spoiler.py").write_text(spoils + HAIR.format(sigma=0.3))

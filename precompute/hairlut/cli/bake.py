@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import batch_bake, exr, half, manifest, modelfile, size
+from .. import batch_bake, exr, manifest, modelfile, size
 from ..cell import Cell
 from ..errors import HairlutError
 from ..lobecheck import find_jump
@@ -80,11 +80,6 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         metavar="CELL",
         help="curve inside a cell: 'parabola limit=NUMBER' or 'linear' (default: %(default)s)",
     )
-    parser.add_argument(
-        "--half",
-        action="store_true",
-        help="always refused, with what half floats would do to the table",
-    )
     return parser
 
 
@@ -106,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
         return run_many(names, args)
     sources = {name: Path(name) for name in names if name not in MODELS}
     for name, source in list(sources.items()):
-        if not args.force and manifest.is_current(args.out / source.stem, source, options(args)):
+        if is_current(source, args):
             print(f"{args.out / source.stem}: {batch_bake.UP_TO_DATE}")
             names.remove(name)
     models = {name: modelfile.find(name) for name in names}
@@ -119,6 +114,11 @@ def run(args: argparse.Namespace) -> int:
         if name in sources:
             record(args, sources[name], model)
     return 0
+
+
+def is_current(source: Path, args: argparse.Namespace) -> bool:
+    """Whether this model file's textures need no baking."""
+    return not args.force and manifest.is_current(args.out / source.stem, source, options(args))
 
 
 def options(args: argparse.Namespace) -> dict:
@@ -152,7 +152,9 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
             if outcome.status == "failed":
                 print(f"  {outcome.text}", file=sys.stderr, flush=True)
 
-        outcomes = batch_bake.bake_many(sources, passed_on(args), args.jobs, report)
+        outcomes = batch_bake.bake_many(
+            sources, passed_on(args), args.jobs, lambda source: is_current(source, args), report
+        )
     counts = {status: sum(o.status == status for o in outcomes) for status in batch_bake.STATUSES}
     print(f"{len(outcomes)} models: " + ", ".join(f"{count} {status}" for status, count in counts.items()))
     for outcome in outcomes:
@@ -184,8 +186,6 @@ def bake_all(lobes: list[Lobe], args: argparse.Namespace) -> list[size.Choice] |
     for lobe in shown:
         try:
             choices.append(bake_one(lobe, args))
-            if args.half:
-                raise half.refusal(choices[-1].table, lobe)
         except size.ToleranceError as error:
             print(f"hairlut: {error}{_jump(lobe)}", file=sys.stderr)
             return None

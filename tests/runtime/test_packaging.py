@@ -1,23 +1,25 @@
 """The library from outside: a tiny project built in each of the three ways that users link."""
 
 import os
+import subprocess
 
 import pytest
 from runtime.c_library import BUILD, HERE, MODELS, ROOT, RUNTIME, cmake, has_exr, run, tool
 
 CONSUMERS = HERE / "consumers"
 PROJECT = """cmake_minimum_required(VERSION 3.21)
-project(consumer LANGUAGES C CXX)
+project(consumer LANGUAGES {languages})
 {how}
 add_executable(c99 "{consumers}/c99.c")
 target_link_libraries(c99 PRIVATE hairlut::{core})
-add_executable(cxx17 "{consumers}/cxx17.cpp")
-target_compile_features(cxx17 PRIVATE cxx_std_17)
-target_link_libraries(cxx17 PRIVATE hairlut::{core})
 if(TARGET hairlut::exr)
     add_executable(exr "{consumers}/exr.c")
     target_link_libraries(exr PRIVATE hairlut::{exr})
 endif()
+"""
+CXX = """add_executable(cxx17 "{consumers}/cxx17.cpp")
+target_compile_features(cxx17 PRIVATE cxx_std_17)
+target_link_libraries(cxx17 PRIVATE hairlut::{core})
 """
 FORMS = [("hairlut", "exr"), ("hairlut_static", "exr_static"), ("hairlut_shared", "exr_shared")]
 
@@ -37,16 +39,28 @@ def prefix(request, tmp_path_factory):
 def check(folder) -> None:
     """Runs what the consumer project built."""
     run(folder / "c99")
-    run(folder / "cxx17")
+    if tool("c++"):
+        run(folder / "cxx17")
     if has_exr():
         for model in MODELS:
             run(folder / "exr", ROOT / "luts" / model)
 
 
+def project(how: str, form: tuple[str, str] = FORMS[0]) -> str:
+    """A CMakeLists.txt of the consumers; those in C++ where there is a compiler for it."""
+    text, languages = (PROJECT + CXX, "C CXX") if tool("c++") else (PROJECT, "C")
+    return text.format(languages=languages, how=how, consumers=CONSUMERS, core=form[0], exr=form[1])
+
+
 def consume(tmp_path, how: str, form: tuple[str, str], *definitions: str) -> None:
-    text = PROJECT.format(how=how, consumers=CONSUMERS, core=form[0], exr=form[1])
-    (tmp_path / "CMakeLists.txt").write_text(text)
+    (tmp_path / "CMakeLists.txt").write_text(project(how, form))
     check(cmake(tmp_path, tmp_path / "build", *definitions))
+
+
+def test_there_is_a_cxx_compiler_for_the_consumers():
+    """Not a test of the library: says loudly what the others leave out."""
+    if not tool("c++"):
+        pytest.skip("consumers in C++ are not built: apt-get install g++")
 
 
 def test_found_by_cmake_after_install(prefix, tmp_path):
@@ -78,7 +92,7 @@ def test_found_by_pkg_config(prefix, tmp_path, linking):
     environment = {**os.environ, "PKG_CONFIG_PATH": str(libraries / "pkgconfig")}
     programs = {"c99": ("c99.c", "hairlut")}
     if has_exr():
-        programs["exr"] = ("exr.c", "hairlut-exr")
+        programs["exr"] = ("exr.c", "hairlut_exr")
     for program, (source, module) in programs.items():
         static = ["--static"] if linking == "static" else []
         flags = run(tool("pkg-config"), *static, "--cflags", "--libs", module, env=environment).stdout.split()
@@ -88,6 +102,81 @@ def test_found_by_pkg_config(prefix, tmp_path, linking):
     run(tmp_path / "c99")
     if has_exr():
         run(tmp_path / "exr", ROOT / "luts" / "fitted")
+
+
+def why_not_found(prefix, tmp_path, *definitions: str, components: str = "exr") -> str:
+    """What CMake says where find_package(hairlut) must fail."""
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.21)\nproject(consumer LANGUAGES C)\n"
+        f"find_package(hairlut REQUIRED COMPONENTS {components})\n"
+    )
+    done = subprocess.run(
+        [tool("cmake"), "-S", tmp_path, "-B", tmp_path / "build", "-G", "Ninja",
+         f"-DCMAKE_MAKE_PROGRAM={tool('ninja')}", f"-DCMAKE_PREFIX_PATH={prefix}", *definitions],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode != 0
+    return " ".join(done.stderr.split())
+
+
+def test_component_exr_without_openexr_says_why(prefix, tmp_path):
+    if not has_exr():
+        pytest.skip("hairlut_exr was not built")
+    said = why_not_found(prefix, tmp_path, "-DCMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON")
+    assert "component exr needs OpenEXR >= 3.1, which was not found" in said
+    assert "apt-get install libopenexr-dev" in said
+
+
+def test_component_exr_of_an_installation_without_it_says_why(tmp_path):
+    build = cmake(
+        RUNTIME, tmp_path / "core", "-DHAIRLUT_EXR=OFF", "-DHAIRLUT_EXAMPLES=OFF",
+        f"-DCMAKE_INSTALL_PREFIX={tmp_path}/p"
+    )  # fmt: skip
+    run(tool("cmake"), "--install", build)
+    assert "was built without OpenEXR" in why_not_found(tmp_path / "p", tmp_path)
+
+
+def test_an_unknown_component_is_named(prefix, tmp_path):
+    assert "there is no component gpu" in why_not_found(prefix, tmp_path, components="gpu")
+
+
+def test_the_installed_loader_finds_the_library_beside_it(prefix):
+    if not has_exr():
+        pytest.skip("hairlut_exr was not built")
+    library = next(prefix.glob("lib*/libhairlut_exr.so"))
+    run(
+        "env", "-u", "LD_LIBRARY_PATH", tool("python3"), "-c", f"import ctypes; ctypes.CDLL({str(library)!r})"
+    )
+
+
+def test_tables_shaders_format_and_license_are_installed(prefix):
+    data = prefix / "share" / "hairlut"
+    installed = {str(file.relative_to(data)) for file in data.rglob("*") if file.is_file()}
+    shipped = {str(file.relative_to(ROOT)) for file in (ROOT / "luts").rglob("*.exr")}
+    shaders = {str(file.relative_to(RUNTIME)) for file in (RUNTIME / "shaders").iterdir()}
+    assert installed == shipped | shaders | {"luts/FORMAT.md", "LICENSE"}
+
+
+def test_make_install_takes_a_prefix_and_a_destination(tmp_path):
+    """DESTDIR, as packagers use it."""
+    environment = {**os.environ, "DESTDIR": str(tmp_path)}
+    run(tool("cmake"), "--install", BUILD / "runtime", "--prefix", "/opt/hairlut", env=environment)
+    assert (tmp_path / "opt" / "hairlut" / "include" / "hairlut.h").is_file()
+    recipe = run("make", "-n", "install", "PREFIX=/opt/hairlut", cwd=ROOT).stdout
+    assert '--install build/runtime --prefix "/opt/hairlut"' in recipe
+
+
+def test_one_form_alone_can_be_installed(tmp_path):
+    build = cmake(
+        RUNTIME, tmp_path / "build", "-DHAIRLUT_EXR=OFF", "-DHAIRLUT_EXAMPLES=OFF", "-DBUILD_SHARED_LIBS=OFF",
+        "-DHAIRLUT_INSTALL_FORMS=static"
+    )  # fmt: skip
+    run(tool("cmake"), "--install", build, "--prefix", tmp_path / "p")
+    assert [file.name for file in (tmp_path / "p").glob("lib*/libhairlut*")] == ["libhairlut.a"]
+    consumer = tmp_path / "consumer"
+    consumer.mkdir()
+    (consumer / "CMakeLists.txt").write_text(project("find_package(hairlut REQUIRED)"))
+    run(cmake(consumer, consumer / "build", f"-DCMAKE_PREFIX_PATH={tmp_path}/p") / "c99")
 
 
 def test_build_without_openexr_says_so_and_leaves_the_core(tmp_path):

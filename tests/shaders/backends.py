@@ -68,8 +68,8 @@ def run_glsl(scene: Scene, records: np.ndarray) -> np.ndarray:
     moderngl = pytest.importorskip("moderngl", reason="moderngl is not installed: pip install moderngl")
     try:
         context = moderngl.create_standalone_context(backend="egl", require=430)
-    except (RuntimeError, OSError, ImportError, moderngl.Error) as error:
-        pytest.skip(f"no OpenGL 4.30 by EGL ({error}): apt-get install libegl1 libgl1-mesa-dri")
+    except Exception as error:  # a bare Exception where libGL is missing
+        pytest.skip(f"no OpenGL 4.30 by EGL ({error}): apt-get install libgl1 libegl1 libgl1-mesa-dri")
     height, width = scene.tables.shape
     shader = context.compute_shader(source("harness.glsl", "hairlut.glsl"))
     texture = context.texture((width, height), 1, scene.tables.tobytes(), dtype="f4")

@@ -9,10 +9,6 @@
 #include <openexr.h>
 #endif
 
-static const char *const table_names[3] = {"direct_theta", "direct_phi", "multiple_theta"};
-
-typedef hairlut_sample (*sampler)(const hairlut_model *, float, float, float, float);
-
 #ifdef PRINT_SAMPLES_EXR
 /* A text attribute of a file, or "?" */
 static void read_attribute(const char *path, const char *attribute, char *text, size_t size)
@@ -29,50 +25,55 @@ static void read_attribute(const char *path, const char *attribute, char *text, 
 }
 #endif
 
-static void print_tables(const hairlut_model *model, const char *directory)
+/* One line: a lobe's table and, where its file is known, its measured errors. */
+static void print_table(const hairlut_model *model, const char *directory, int lobe, hairlut_angle angle)
 {
-    printf("    %-15s %9s %9s %19s %15s\n", "table", "size", "bytes", "relative variance", "largest weight");
-    for (int k = 0; k < 3; ++k) {
-        int width, height;
-        char size[32], variance[32] = "-", weight[32] = "-";
-        hairlut_table_size(model, (hairlut_part)k, &width, &height);
-        snprintf(size, sizeof size, "%dx%d", width, height);
+    int width, height;
+    char name[64], size[32], variance[32] = "-", weight[32] = "-";
+    hairlut_table_size(model, lobe, angle, &width, &height);
+    if (width == 0)
+        return;
+    snprintf(name, sizeof name, "%s_%s", hairlut_lobe_name(model, lobe), angle == HAIRLUT_PHI ? "phi" : "theta");
+    snprintf(size, sizeof size, "%dx%d", width, height);
 #ifdef PRINT_SAMPLES_EXR
-        if (directory) {
-            char path[1024];
-            snprintf(path, sizeof path, "%s/%s.exr", directory, table_names[k]);
-            read_attribute(path, "hairlut.error.relative_variance", variance, sizeof variance);
-            read_attribute(path, "hairlut.error.largest_weight", weight, sizeof weight);
-        }
-#else
-        (void)directory;
-#endif
-        printf("    %-15s %9s %9d %19s %15s\n", table_names[k], size, width * height * 4, variance, weight);
+    if (directory) {
+        char path[1024];
+        snprintf(path, sizeof path, "%s/%s.exr", directory, name);
+        read_attribute(path, "hairlut.error.relative_variance", variance, sizeof variance);
+        read_attribute(path, "hairlut.error.largest_weight", weight, sizeof weight);
     }
+#else
+    (void)directory;
+#endif
+    printf("    %-15s %9s %9d %19s %15s\n", name, size, width * height * 8, variance, weight);
 }
 
-static void print_lobe(const hairlut_model *model, const char *name, sampler sample)
+static void print_lobe(const hairlut_model *model, int lobe)
 {
     const float degree = 0.0174532925f;
     const float theta_r[4] = {-75.0f * degree, -20.0f * degree, 10.0f * degree, 50.0f * degree};
     const float phi_r = 60.0f * degree;
     for (int k = 0; k < 4; ++k) {
         const float u_theta = 0.2f + 0.2f * (float)k, u_phi = 0.9f - 0.25f * (float)k;
-        const hairlut_sample s = sample(model, theta_r[k], phi_r, u_theta, u_phi);
-        printf("    %-8s %8.1f %8.1f %10.2f %6.2f %10.3f %9.3f %12.5f\n", name, (double)(theta_r[k] / degree),
-               (double)(phi_r / degree), (double)u_theta, (double)u_phi, (double)(s.theta_i / degree),
-               (double)(s.phi_i / degree), (double)s.pdf_solid_angle);
+        const hairlut_sample s = hairlut_sample_lobe(model, lobe, theta_r[k], phi_r, u_theta, u_phi);
+        printf("    %-8s %8.1f %8.1f %10.2f %6.2f %10.3f %9.3f %12.5f\n", hairlut_lobe_name(model, lobe),
+               (double)(theta_r[k] / degree), (double)(phi_r / degree), (double)u_theta, (double)u_phi,
+               (double)(s.theta_i / degree), (double)(s.phi_i / degree), (double)s.pdf_solid_angle);
     }
 }
 
 static void print_model(const hairlut_model *model, const char *title, const char *directory)
 {
     printf("\n%s\n", title);
-    print_tables(model, directory);
+    printf("    %-15s %9s %9s %19s %15s\n", "table", "size", "bytes", "relative variance", "largest weight");
+    for (int lobe = 0; lobe < hairlut_lobe_count(model); ++lobe) {
+        print_table(model, directory, lobe, HAIRLUT_THETA);
+        print_table(model, directory, lobe, HAIRLUT_PHI);
+    }
     printf("    %-8s %8s %8s %10s %6s %10s %9s %12s\n", "lobe", "theta_r", "phi_r", "u_theta", "u_phi", "theta_i", "phi_i",
            "pdf per sr");
-    print_lobe(model, "direct", hairlut_sample_direct);
-    print_lobe(model, "multiple", hairlut_sample_multiple);
+    for (int lobe = 0; lobe < hairlut_lobe_count(model); ++lobe)
+        print_lobe(model, lobe);
 }
 
 static int print_directory(const char *directory)

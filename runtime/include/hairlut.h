@@ -1,24 +1,31 @@
-/* hairlut: importance sampling of a hair shader's scattering lobes from lookup tables.
+/* hairlut: importance sampling of a hair's scattering from lookup tables.
  *
  *     #include "hairlut.h"
  *
  *     const hairlut_model *hair = hairlut_builtin("fitted");
- *     hairlut_sample s = hairlut_sample_direct(hair, theta_r, phi_r, u_theta, u_phi);
+ *     hairlut_sample s = hairlut_sample_hair(hair, NULL, theta_r, phi_r, offset, u_lobe, u_theta, u_phi);
  *     // light arrives from (s.theta_i, s.phi_i); weigh it by bsdf * cos(theta_i) / s.pdf_solid_angle
- *     float q = hairlut_pdf_direct(hair, theta_r, phi_r, s.theta_i, s.phi_i);     // == s.pdf_angle
+ *     float q = hairlut_pdf_hair(hair, NULL, theta_r, phi_r, offset, theta_i, phi_i);   // of any direction, per rad^2
+ *
+ * A model is a mixture of 1 to 16 lobes. A lobe is the product of a distribution of theta_i and one of the azimuth, each
+ * tabulated over theta_r; without an azimuth table its azimuth is uniform. The mixture gives each lobe's share, and the angle
+ * by which the lobe is turned around the fibre, over theta_r and the offset at which the fibre is hit.
  *
  * Angles are in radians. theta is the inclination from the plane normal to the fibre, in [-pi/2, pi/2]; phi is the
  * azimuth around the fibre. (theta_r, phi_r) is the known viewer direction, (theta_i, phi_i) the sampled incident one.
+ * The offset is where the viewer's ray passes the fibre's axis, in radii, from -1 to 1. Its sign is that of Chiang (2016) and
+ * pbrt: a fibre hit at h reflects from its surface to the relative azimuth -2 asin(h). Pass 0 where there is no offset.
  *
  * Density. `pdf_angle` is per rad^2 in (theta_i, phi_i); `pdf_solid_angle` = pdf_angle / cos(theta_i), per steradian.
  * Both are the density of exactly what the library samples: the derivative of the interpolated inverse CDF, not the
  * formula of the lobe that was tabulated. An estimator that divides by it is unbiased for every table, coarse or fine.
  *
- * Rules for every function on the sampling path (sample, pdf, invert, mixture, components, the _n forms):
- *   - no finite input gives NaN or infinity. u outside [0,1] and theta_r outside its range are clamped; an azimuth of
- *     any finite size is reduced modulo 2 pi (beyond 2^24 rad a float holds no azimuth, and the result is merely valid).
+ * Rules for every function on the sampling path (sample, pdf, invert, the _n forms):
+ *   - no finite input gives NaN or infinity. u outside [0,1], an offset outside [-1,1] and theta_r outside its range are
+ *     clamped; an azimuth of any finite size is reduced modulo 2 pi (beyond 2^24 rad a float holds no azimuth, and the result
+ *     is merely valid).
  *   - NaN in any argument, or an infinite azimuth, gives a density of 0, with finite angles inside their ranges.
- *     An infinite theta_r or u is clamped like any other value outside its range.
+ *     An infinite theta_r, offset or u is clamped like any other value outside its range.
  *   - theta_i outside [-pi/2, pi/2] has density 0.
  *   - no allocation, no global state, no errno. Arrays belong to the caller and are not kept.
  *
@@ -48,7 +55,7 @@ typedef enum hairlut_result {
     HAIRLUT_ERROR_FILE,      /* a file is missing, truncated or not an OpenEXR image */
     HAIRLUT_ERROR_ATTRIBUTE, /* a header attribute is missing or has an unexpected value */
     HAIRLUT_ERROR_VERSION,   /* the file is of a newer format than this library reads */
-    HAIRLUT_ERROR_TABLE,     /* the texels are not a table: NaN, not increasing, outside the domain, too small */
+    HAIRLUT_ERROR_TABLE,     /* the texels are not a table: NaN, not increasing, outside the domain, too small; or not a mixture */
     HAIRLUT_ERROR_UNSUPPORTED /* the file needs a feature (a compression) that the OpenEXR library in use lacks */
 } hairlut_result;
 
@@ -59,7 +66,9 @@ HAIRLUT_API const char *hairlut_result_string(hairlut_result result);
 
 typedef struct hairlut_model hairlut_model;
 
-/* "printed" or "fitted": the tables compiled into the library. NULL for any other name. Nothing to free. */
+enum { HAIRLUT_MAX_LOBES = 16, HAIRLUT_NAME_SIZE = 32 /* bytes of a lobe's name, with its end */ };
+
+/* "printed", "fitted" or "brown": a model compiled into the library. NULL for any other name. Nothing to free. */
 HAIRLUT_API const hairlut_model *hairlut_builtin(const char *name);
 
 typedef enum hairlut_warp {
@@ -72,26 +81,54 @@ typedef enum hairlut_azimuth {
     HAIRLUT_AZIMUTH_SUM = 1         /* it holds phi_i + phi_r modulo 2 pi */
 } hairlut_azimuth;
 
-/* One table as it stands in a file (luts/FORMAT.md): row j belongs to theta_r = theta_r_min + j (theta_r_max -
- * theta_r_min)/(height-1); texels[j*width + i] is the angle whose cumulative probability is knot i. */
+/* The descriptors below begin with their size, which is the size of the struct as the caller's compiler knows it: a later
+ * version can add fields at their ends without breaking a binary. A size that this version does not know is refused. */
+
+/* One table as it stands in a file (luts/FORMAT.md). Row j belongs to theta_r = theta_r_min + j (theta_r_max - theta_r_min) /
+ * (height - 1). Texel i of a row is a pair of floats: the angle x whose cumulative probability is knot i, and dx/du there.
+ * Between knots x is the monotone rational quadratic of Gregory and Delbourgo (1982) through these values and slopes;
+ * between rows, values and slopes are blended linearly in theta_r. */
 typedef struct hairlut_table {
-    const float *texels;  /* width*height floats, row-major; along a row each is at least 1e-12 above the last */
+    size_t size;          /* sizeof(hairlut_table) */
+    const float *texels;  /* width*height pairs, row-major; along a row each angle is at least 1e-12 above the last */
     int width;            /* 4 to 4096 */
     int height;           /* 2 to 4096 */
     float theta_r_min;    /* rad, -2 pi <= theta_r_min < theta_r_max */
     float theta_r_max;    /* rad, <= 2 pi */
-    float domain_min;     /* rad, -2 pi <= domain_min; the first texel of every row */
-    float domain_max;     /* rad, <= 2 pi; the last texel of every row */
+    float domain_min;     /* rad, -2 pi <= domain_min; the first angle of every row */
+    float domain_max;     /* rad, <= 2 pi; the last angle of every row */
     hairlut_warp warp;
     float warp_e;         /* the parameter of octaves, 1e-12 to 1; ignored for the uniform warp */
-    float cell_limit;     /* in [0, 0.95]: bound of a cell's curvature; 0 makes cells linear in u */
 } hairlut_table;
 
+/* A lobe: the product of two tables. Lobes that pass the same table pointers share the memory of those tables. */
+typedef struct hairlut_lobe_desc {
+    size_t size;                /* sizeof(hairlut_lobe_desc) */
+    const char *name;           /* [a-z][a-z0-9_]*, at most 31 characters, no other lobe's */
+    const hairlut_table *theta; /* theta_i: its domain lies within [-pi/2, pi/2] */
+    const hairlut_table *phi;   /* the relative azimuth: its domain lies within [0, 2 pi]; NULL: uniform */
+    hairlut_azimuth azimuth;    /* what phi holds; ignored where it is NULL */
+} hairlut_lobe_desc;
+
+/* Shares and turns at the nodes of a grid over theta_r and the offset. Both are linear in theta_r and in the asin of the offset
+ * between nodes, and constant beyond them; turns are blended along the shorter arc. One node where nothing depends on an axis.
+ * Lobe k's value at theta_r node j and offset node o stands at [(k*theta_r_count + j)*offset_count + o]. */
+typedef struct hairlut_mixture_desc {
+    size_t size;          /* sizeof(hairlut_mixture_desc) */
+    int theta_r_count;    /* 1 to 4096 */
+    int offset_count;     /* 1 to 4096 */
+    const float *theta_r; /* rad, increasing, within [-2 pi, 2 pi]; may be NULL for a single node */
+    const float *offset;  /* increasing, within [-1, 1], or [0, 1] if mirrored; may be NULL for a single node */
+    const float *share;   /* finite, not negative, at each node at least one above 0, in any unit; NULL: equal shares */
+    const float *turn;    /* rad, of at most 8 pi in size; NULL: 0 */
+    int mirrored;         /* 1: an offset -h has the shares and turns of h, and the azimuths drawn are negated; else 0 */
+} hairlut_mixture_desc;
+
 typedef struct hairlut_model_desc {
-    hairlut_table direct_theta;
-    hairlut_table direct_phi;
-    hairlut_table multiple_theta;
-    hairlut_azimuth azimuth;
+    size_t size;                         /* sizeof(hairlut_model_desc) */
+    int lobe_count;                      /* 1 to HAIRLUT_MAX_LOBES */
+    const hairlut_lobe_desc *lobes;      /* lobe_count descriptors, each of the size that the first one states */
+    const hairlut_mixture_desc *mixture; /* NULL: equal shares, no turns */
 } hairlut_model_desc;
 
 /* Memory for a model. A zeroed struct, or NULL where one is asked for, means malloc and free. `allocate` returns memory
@@ -106,23 +143,31 @@ typedef struct hairlut_allocator {
 enum { HAIRLUT_MESSAGE_SIZE = 512 };
 
 /* Checks a table that did not come from this project's tools. HAIRLUT_OK, or an error; `message`, if not NULL, holds
- * HAIRLUT_MESSAGE_SIZE bytes and receives what is wrong, where, and what was expected. Reads width*height floats. */
+ * HAIRLUT_MESSAGE_SIZE bytes and receives what is wrong, where, and what was expected. Slopes must be 1e-9 to 1e12 rad per unit
+ * of u. Reads width*height pairs of floats. */
 HAIRLUT_API hairlut_result hairlut_validate(const hairlut_table *table, char *message);
 
-/* Builds a model from three tables in memory. The texels are copied, into five to seven times their own memory in the order in
- * which samples read them: the caller may free them when this returns. Every table is validated first; theta tables must
- * lie within [-pi/2, pi/2], the azimuth table within [0, 2 pi]. On error *out is NULL and nothing stays allocated. Free with
- * hairlut_free. */
+/* Builds a model from tables in memory, which are copied, into about four times their own memory in the order in which samples
+ * read them: the caller may free everything when this returns. All of it is validated first. On error *out is NULL and
+ * nothing stays allocated. Free with hairlut_free. */
 HAIRLUT_API hairlut_result hairlut_model_create(const hairlut_model_desc *desc, const hairlut_allocator *allocator,
                                                 hairlut_model **out, char *message);
 
 /* Releases a model made by hairlut_model_create or hairlut_load; NULL is allowed. No thread may be using it. */
 HAIRLUT_API void hairlut_free(hairlut_model *model);
 
-typedef enum hairlut_part { HAIRLUT_DIRECT_THETA = 0, HAIRLUT_DIRECT_PHI = 1, HAIRLUT_MULTIPLE_THETA = 2 } hairlut_part;
+HAIRLUT_API int hairlut_lobe_count(const hairlut_model *model);
 
-/* Columns and rows of one of a model's tables; `part` must be one of the three. */
-HAIRLUT_API void hairlut_table_size(const hairlut_model *model, hairlut_part part, int *width, int *height);
+/* The name of lobe 0 to count - 1, as long as the model lives; NULL for any other number. */
+HAIRLUT_API const char *hairlut_lobe_name(const hairlut_model *model, int lobe);
+
+/* The number of the lobe of that name; -1 if there is none. */
+HAIRLUT_API int hairlut_lobe_index(const hairlut_model *model, const char *name);
+
+typedef enum hairlut_angle { HAIRLUT_THETA = 0, HAIRLUT_PHI = 1 } hairlut_angle;
+
+/* Columns and rows of one of a lobe's tables; 0 and 0 where there is none. */
+HAIRLUT_API void hairlut_table_size(const hairlut_model *model, int lobe, hairlut_angle angle, int *width, int *height);
 
 /* ---- one direction -------------------------------------------------------------------------------------------- */
 
@@ -133,54 +178,40 @@ typedef struct hairlut_sample {
     float pdf_solid_angle; /* per sr */
 } hairlut_sample;
 
-/* Draws an incident direction for the viewer direction (theta_r, phi_r) from two numbers in [0,1). */
+/* The whole hair. Draws an incident direction for the viewer direction (theta_r, phi_r) from three numbers in [0,1): the lobe
+ * by u_lobe, in proportion to the shares, then its angles. The densities returned are the mixture's.
+ *
+ * shares: NULL for the model's own, or one number a lobe, in any unit, for this call. A negative one counts as 0. Where none is
+ * above 0, or one is infinite or NaN, the density is 0. A lobe without share is never drawn. */
+HAIRLUT_API hairlut_sample hairlut_sample_hair(const hairlut_model *model, const float *shares, float theta_r, float phi_r,
+                                               float offset, float u_lobe, float u_theta, float u_phi);
+
+/* Density, per rad^2, with which the function above draws (theta_i, phi_i): the sum of share * density over the lobes, divided
+ * by the sum of the shares. phi_i may be any finite azimuth. Equal to the density returned with a sample but for rounding. */
+HAIRLUT_API float hairlut_pdf_hair(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset,
+                                   float theta_i, float phi_i);
+
+/* One lobe by itself, not turned: lobe 0 to count - 1. Any other number gives density 0, with finite angles. */
+HAIRLUT_API hairlut_sample hairlut_sample_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r,
+                                               float u_theta, float u_phi);
+HAIRLUT_API float hairlut_pdf_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float theta_i,
+                                   float phi_i);
+
+/* The numbers u[0] = u_theta and u[1] = u_phi from which hairlut_sample_lobe draws (theta_i, phi_i). Directions outside the
+ * domain give the nearer end's u; NaN, or a lobe that there is not, gives 0. */
+HAIRLUT_API void hairlut_invert_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float theta_i,
+                                     float phi_i, float u[2]);
+
+/* The lobes named "direct" and "multiple": the two parts of dual scattering. On a model without such a lobe: density 0. */
 HAIRLUT_API hairlut_sample hairlut_sample_direct(const hairlut_model *model, float theta_r, float phi_r, float u_theta,
                                                  float u_phi);
 HAIRLUT_API hairlut_sample hairlut_sample_multiple(const hairlut_model *model, float theta_r, float phi_r, float u_theta,
                                                    float u_phi);
-
-/* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
 HAIRLUT_API float hairlut_pdf_direct(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i);
 HAIRLUT_API float hairlut_pdf_multiple(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i);
 
-/* The numbers u[0] = u_theta and u[1] = u_phi from which the sampling function draws (theta_i, phi_i). Directions
- * outside the domain give the nearer end's u; NaN gives 0. */
-HAIRLUT_API void hairlut_invert_direct(const hairlut_model *model, float theta_r, float phi_r, float theta_i, float phi_i,
-                                       float u[2]);
-HAIRLUT_API void hairlut_invert_multiple(const hairlut_model *model, float theta_r, float phi_r, float theta_i,
-                                         float phi_i, float u[2]);
-
 /* per rad^2 to per sr: pdf_angle / cos(theta_i), finite also at theta_i = +-pi/2 */
 HAIRLUT_API float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i);
-
-/* ---- both lobes at once --------------------------------------------------------------------------------------- */
-
-/* With probability direct_weight, clamped to [0,1], draws from the direct lobe (u_lobe < direct_weight), else from the
- * multiple lobe. The densities returned are the mixture's: direct_weight * direct + (1 - direct_weight) * multiple. */
-HAIRLUT_API hairlut_sample hairlut_sample_mixture(const hairlut_model *model, float direct_weight, float theta_r,
-                                                  float phi_r, float u_lobe, float u_theta, float u_phi);
-HAIRLUT_API float hairlut_pdf_mixture(const hairlut_model *model, float direct_weight, float theta_r, float phi_r,
-                                      float theta_i, float phi_i);
-
-/* ---- any lobes of any models ---------------------------------------------------------------------------------- */
-
-typedef enum hairlut_lobe { HAIRLUT_LOBE_DIRECT = 0, HAIRLUT_LOBE_MULTIPLE = 1 } hairlut_lobe;
-
-/* One lobe of a mixture. The array of them is the caller's; it is read while the call lasts. */
-typedef struct hairlut_component {
-    const hairlut_model *model; /* never NULL, unless weight is 0 or negative: then it is not read */
-    hairlut_lobe lobe;
-    float weight; /* in any unit: lobes are drawn in proportion to their weights. Negative counts as 0 */
-    float turn;   /* rad, any finite size: added to phi_i of what the lobe draws; it turns the lobe around the fibre */
-} hairlut_component;
-
-/* Draws from one of n lobes, chosen by u_lobe. The densities returned are the mixture's: the sum of weight * density
- * over the lobes, divided by the sum of the weights. The time grows with n. Where n <= 0, no weight is above 0, or one
- * is infinite or NaN, or the turn of a lobe with weight is, the density is 0. */
-HAIRLUT_API hairlut_sample hairlut_sample_components(const hairlut_component *components, int n, float theta_r,
-                                                     float phi_r, float u_lobe, float u_theta, float u_phi);
-HAIRLUT_API float hairlut_pdf_components(const hairlut_component *components, int n, float theta_r, float phi_r,
-                                         float theta_i, float phi_i);
 
 /* ---- directions in a fibre frame ------------------------------------------------------------------------------ */
 
@@ -204,7 +235,9 @@ HAIRLUT_API void hairlut_direction(const hairlut_frame *frame, float theta, floa
 /* As the functions above for i in [0,n). Every pointer addresses n floats of any alignment (64 bytes is fastest); n may be 0.
  * An output may be the same array as an input (in place, from the same first element), never overlap one otherwise. Results
  * equal those of the one-direction forms bit for bit, whichever kernel runs: portable C, AVX2, AVX-512 (from Ice Lake and
- * Zen 4 on) or NEON, chosen at run time. */
+ * Zen 4 on) or NEON, chosen at run time.
+ *
+ * shares: NULL for the model's own, or lobe_count * n floats, those of lobe k from k * n on. offset: NULL for 0. */
 typedef struct hairlut_samples {
     float *theta_i;
     float *phi_i;
@@ -212,6 +245,16 @@ typedef struct hairlut_samples {
     float *pdf_solid_angle; /* may be NULL: not stored */
 } hairlut_samples;
 
+HAIRLUT_API void hairlut_sample_hair_n(const hairlut_model *model, size_t n, const float *shares, const float *theta_r,
+                                       const float *phi_r, const float *offset, const float *u_lobe, const float *u_theta,
+                                       const float *u_phi, hairlut_samples out);
+HAIRLUT_API void hairlut_pdf_hair_n(const hairlut_model *model, size_t n, const float *shares, const float *theta_r,
+                                    const float *phi_r, const float *offset, const float *theta_i, const float *phi_i,
+                                    float *pdf_angle);
+HAIRLUT_API void hairlut_sample_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r,
+                                       const float *phi_r, const float *u_theta, const float *u_phi, hairlut_samples out);
+HAIRLUT_API void hairlut_pdf_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
+                                    const float *theta_i, const float *phi_i, float *pdf_angle);
 HAIRLUT_API void hairlut_sample_direct_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
                                          const float *u_theta, const float *u_phi, hairlut_samples out);
 HAIRLUT_API void hairlut_sample_multiple_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
@@ -220,16 +263,11 @@ HAIRLUT_API void hairlut_pdf_direct_n(const hairlut_model *model, size_t n, cons
                                       const float *theta_i, const float *phi_i, float *pdf_angle);
 HAIRLUT_API void hairlut_pdf_multiple_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,
                                         const float *theta_i, const float *phi_i, float *pdf_angle);
-HAIRLUT_API void hairlut_sample_mixture_n(const hairlut_model *model, size_t n, const float *direct_weight,
-                                          const float *theta_r, const float *phi_r, const float *u_lobe,
-                                          const float *u_theta, const float *u_phi, hairlut_samples out);
-HAIRLUT_API void hairlut_pdf_mixture_n(const hairlut_model *model, size_t n, const float *direct_weight,
-                                       const float *theta_r, const float *phi_r, const float *theta_i,
-                                       const float *phi_i, float *pdf_angle);
 
 /* ---- files (library hairlut_exr) ------------------------------------------------------------------------------ */
 
-/* Loads direct_theta.exr, direct_phi.exr and multiple_theta.exr from `directory` (luts/FORMAT.md says what is checked).
+/* Loads the model of a directory: mixture.exr and the tables that it names (luts/FORMAT.md says what is checked), or the three
+ * tables of format 1: lobes "direct" and "multiple" of equal shares.
  * On error *out is NULL, nothing stays allocated, and `message`, if not NULL, holds HAIRLUT_MESSAGE_SIZE bytes and
  * receives the file, the attribute, what was expected and what to do. Free with hairlut_free.
  * OpenEXR takes its own temporary memory from malloc. Any number of threads may load at once. */

@@ -1,12 +1,18 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The one reading of a table, shared by sample, pdf and invert (luts/FORMAT.md, "Reading").
  *
- * The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with d = m - u0 the distance in u
- * from its nearer knot,
+ * The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, x is the monotone rational
+ * quadratic of Gregory and Delbourgo (1982): with xi = (m - u0) / h, q = 1 - xi, w the cell's width, and D = h dx/dm at its ends,
  *
- *     x = x0 + d (a - c d),     dx/dm = a - 2 c d,     density = 1 / |dx/dm|,     (dx/dm)^2 = a^2 - 4 c (x - x0),
+ *     G = w (xi^2 + q^2) + (D0 + D1) xi q,        x = x0 + w (w xi^2 + D0 xi q) / G,
+ *     h dx/dm = w^2 (D1 xi^2 + 2 w xi q + D0 q^2) / G^2,
  *
- * where a is the slope at that knot and c the cell's curvature. All is counted from the nearer end of the u axis: m is
- * min(u, 1-u), and in the high half of a row a is negative. */
+ * and back from x, with X = x - x0, Z = w - X, without cancellation:
+ *
+ *     B = D0 Z - D1 X,  R = sqrt(B^2 + 4 w^2 X Z),   xi : q = 2 w X : R + B where B >= 0, else R - B : 2 w Z,
+ *     density = 1 / |dx/dm| = h |G| / R.
+ *
+ * All is counted from the nearer end of the u axis: m is min(u, 1-u), and in the high half of a row w and D are negative. */
 #ifndef HAIRLUT_AXIS_H
 #define HAIRLUT_AXIS_H
 
@@ -16,8 +22,6 @@
 #include "internal.h"
 #include "quad.h"
 
-static const float hairlut_least_square = 6.5e-4f; /* below (0.05 / 1.95)^2 */
-
 /* Where theta_r lies: the row below it, and the weight of the row above, in [0,1). */
 typedef struct hairlut_row {
     int j;
@@ -25,15 +29,15 @@ typedef struct hairlut_row {
 } hairlut_row;
 
 typedef struct hairlut_cell {
-    float x0, a, c, u0;
+    float x0, d0, w, d1;
 } hairlut_cell;
 
 /* A place on the u axis: m = min(u, 1-u), and its cell, counted from the low or the high end. */
-typedef struct hairlut_knot {
+typedef struct hairlut_place {
     int i;
     int high;
     float m;
-} hairlut_knot;
+} hairlut_place;
 
 /* An angle drawn, and |dx/du| there: the density is one over it, which the caller takes of all its axes at once. */
 typedef struct hairlut_draw {
@@ -78,28 +82,28 @@ static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta
     return row;
 }
 
-/* Cell i of rows j and j+1, from an end; t in all lanes. Blended as (1-t) p + t q, which keeps a slope above zero at
- * every t, as p + t (q-p) does not where q is far below p. */
-HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad t, int i, int high)
+/* Cell i of rows j and j+1, from an end; `below` and `above`, in all lanes, are their weights. Blended as (1-t) p + t q, which
+ * keeps a slope above zero at every t, as p + t (q-p) does not where q is far below p. */
+HAIRLUT_INLINE hairlut_cell hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad below, hairlut_quad above, int i,
+                                              int high)
 {
     const unsigned column = (unsigned)i * (unsigned)axis->pitch; /* unsigned: an address needs no sign extended */
     const float *p = axis->ends[high] + column + (unsigned)j * HAIRLUT_CELL, *q = p + HAIRLUT_CELL;
-    const hairlut_quad below = hairlut_quad_mul(hairlut_quad_sub(hairlut_quad_all(1.0f), t), hairlut_quad_load(p));
-    const hairlut_quad above = hairlut_quad_mul(t, hairlut_quad_load(q));
-    float part[3];
-    hairlut_quad_first3(hairlut_quad_add(below, above), part);
-    const hairlut_cell cell = {part[0], part[1], part[2], p[3]};
+    float part[4];
+    hairlut_quad_lanes(hairlut_quad_add(hairlut_quad_mul(below, hairlut_quad_load(p)), hairlut_quad_mul(above, hairlut_quad_load(q))),
+                       part);
+    const hairlut_cell cell = {part[0], part[1], part[2], part[3]};
     return cell;
 }
 
 /* u to cell. The fold at u = 1/2 keeps the relative precision of both tails, and chooses the half without a branch: u is
  * as good as random, and so would be the branch. */
-HAIRLUT_INLINE hairlut_knot hairlut_axis_knot(const hairlut_axis *axis, float u)
+HAIRLUT_INLINE hairlut_place hairlut_axis_place(const hairlut_axis *axis, float u)
 {
     const float m = hairlut_max(hairlut_min(u, 1.0f - u), hairlut_constant(0.0f));
     const float y = axis->warp == HAIRLUT_WARP_OCTAVES ? hairlut_shifted(m + axis->e) : m;
-    const hairlut_knot knot = {(int)(y * axis->scale - axis->origin), u > 0.5f, m};
-    return knot;
+    const hairlut_place place = {(int)(y * axis->scale - axis->origin), u > 0.5f, m};
+    return place;
 }
 
 /* How many of a group's n texels, blended with those of the row above, are at most x; n is that of a group. `above` is the
@@ -135,52 +139,31 @@ static inline int hairlut_halve(const float *groups, int stride, float t, float 
     return first;
 }
 
-/* The row and the cell of an angle. */
-typedef struct hairlut_found {
-    hairlut_row row;
-    int cell; /* counted from the low end */
-} hairlut_found;
-
 /* A search as far as the first group takes it: the row, the angle, moved into the domain, and the first cell of its block. */
-typedef struct hairlut_query {
+typedef struct hairlut_search {
     hairlut_row row;
     float x;
     int first;
-} hairlut_query;
+} hairlut_search;
 
-/* The first half of a search. x outside the domain is moved to its end, NaN to the low one: what is looked for is what a
- * row holds, not infinity. */
-HAIRLUT_INLINE hairlut_query hairlut_axis_ask(const hairlut_axis *axis, float theta_r, float x)
+/* The first half of a search. x outside the domain is moved to its end, NaN to the low one. */
+HAIRLUT_INLINE hairlut_search hairlut_axis_begin_search(const hairlut_axis *axis, float theta_r, float x)
 {
-    hairlut_query query = {hairlut_axis_row(axis, theta_r), hairlut_axis_inside(axis, x), 0};
-    const float *group = axis->rows + (ptrdiff_t)query.row.j * axis->stride;
-    query.first = axis->step * hairlut_axis_count(axis, group, query.row.t, query.x);
-    return query;
+    hairlut_search search = {hairlut_axis_row(axis, theta_r), hairlut_axis_inside(axis, x), 0};
+    const float *group = axis->rows + (ptrdiff_t)search.row.j * axis->stride;
+    search.first = axis->step * hairlut_axis_count(axis, group, search.row.t, search.x);
+    return search;
 }
 
-/* The rest of it: the cell whose blended texels enclose x. */
-HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_axis *axis, hairlut_query query)
+/* The rest of it: the cell whose blended ends enclose x, counted from the low end. Where there are several axes, begin all
+ * searches before ending any: one waits for its loads while the other goes on. */
+HAIRLUT_INLINE int hairlut_axis_end_search(const hairlut_axis *axis, const hairlut_search *search)
 {
-    const float t = query.row.t, *groups = axis->rows + (ptrdiff_t)query.row.j * axis->stride + HAIRLUT_LINE;
-    hairlut_found found = {query.row, query.first};
+    const float t = search->row.t, *groups = axis->rows + (ptrdiff_t)search->row.j * axis->stride + HAIRLUT_LINE;
+    int cell = search->first;
     if (!HAIRLUT_IS_SMALL(axis->columns))
-        found.cell += hairlut_halve(groups + found.cell, axis->stride, t, query.x, axis->step);
-    found.cell += hairlut_axis_count(axis, groups + HAIRLUT_SPREAD(axis->columns) * found.cell, t, query.x);
-    return found;
-}
-
-/* Where there are several axes, ask of all before any is found: one waits for its loads while the other goes on. */
-HAIRLUT_INLINE hairlut_found hairlut_axis_look_up(const hairlut_axis *axis, float theta_r, float x)
-{
-    return hairlut_axis_find(axis, hairlut_axis_ask(axis, theta_r, x));
-}
-
-/* |dx/du| where a cell is at x. A curvature is at most 0.95 of a width, so that no slope is below 0.05 / 1.95 of another in the
- * cell, whatever rounding does. Near that bound the difference cancels, no more than x itself is rounded. */
-static inline float hairlut_cell_slope(const hairlut_cell *cell, float x)
-{
-    const float square = cell->a * cell->a;
-    return sqrtf(hairlut_max(square - 4.0f * cell->c * (x - cell->x0), hairlut_least_square * square));
+        cell += hairlut_halve(groups + cell, axis->stride, t, search->x, axis->step);
+    return cell + hairlut_axis_count(axis, groups + HAIRLUT_ROW_FLOATS(axis->columns) * cell, t, search->x);
 }
 
 /* A cell counted from the nearer end of a row. *high gets whether that is the high end. */
@@ -191,48 +174,70 @@ static inline int hairlut_axis_nearer(const hairlut_axis *axis, int cell, int *h
     return i;
 }
 
-/* The cell that look_up found, as stored: from the nearer end of the row. */
-static inline hairlut_cell hairlut_axis_found(const hairlut_axis *axis, hairlut_found found, int *high)
+/* Where x lies in a cell: xi : q = a : b, and |dx/dm| = root / bend, the R and the h |G| of above. */
+typedef struct hairlut_inverse {
+    float a, b;
+    float root, bend;
+    float knot, width; /* of the cell, in m */
+    int high;
+} hairlut_inverse;
+
+/* Angles are multiplied by HAIRLUT_SCALE, through the weights of the two rows: no product of four of them, as in R^2, leaves the
+ * range of a float, whether a cell is 1e-12 or 2 pi rad wide. */
+HAIRLUT_INLINE hairlut_inverse hairlut_axis_inverse(const hairlut_axis *axis, const hairlut_search *search, int found)
 {
-    const int i = hairlut_axis_nearer(axis, found.cell, high);
-    return hairlut_axis_cell(axis, found.row.j, hairlut_quad_all(found.row.t), i, *high);
+    hairlut_inverse inverse;
+    const int i = hairlut_axis_nearer(axis, found, &inverse.high);
+    const float t = search->row.t, *knot = axis->knots + HAIRLUT_KNOT * i, x = HAIRLUT_SCALE * search->x;
+    const hairlut_cell cell =
+        hairlut_axis_cell(axis, search->row.j, hairlut_quad_all(HAIRLUT_SCALE * (1.0f - t)), hairlut_quad_all(HAIRLUT_SCALE * t), i,
+                          inverse.high);
+    const float w = cell.w, from = x - cell.x0, to = w - from;
+    const float wx = hairlut_max(w * from, hairlut_constant(0.0f)), wz = hairlut_max(w * to, hairlut_constant(0.0f));
+    const float balance = cell.d0 * to - cell.d1 * from;
+    const float root = sqrtf(balance * balance + 4.0f * (wx * wz)), sum = root + fabsf(balance);
+    inverse.a = balance >= 0.0f ? 2.0f * wx : sum;
+    inverse.b = balance >= 0.0f ? sum : 2.0f * wz;
+    const float total = inverse.a + inverse.b, unit = 1.0f / total, xi = inverse.a * unit, q = inverse.b * unit;
+    inverse.root = root;
+    inverse.bend = knot[2] * fabsf(w * (xi * xi + q * q) + (cell.d0 + cell.d1) * (xi * q));
+    inverse.knot = knot[0];
+    inverse.width = knot[2] * (1.0f / HAIRLUT_SCALE);
+    return inverse;
 }
 
 /* x may be beyond an end of the domain by the rounding of a blend, two steps of a float: hairlut_axis_inside moves it back,
- * where what uses x does not have to wait for that. */
+ * where what uses x does not have to wait for that. xi and q are kept above 0, where rounding chose the cell beside. */
 HAIRLUT_INLINE hairlut_draw hairlut_axis_sample(const hairlut_axis *axis, float theta_r, float u)
 {
     int j;
     const hairlut_quad t = hairlut_quad_split(hairlut_axis_position(axis, theta_r), &j);
-    const hairlut_knot knot = hairlut_axis_knot(axis, u);
-    const hairlut_cell cell = hairlut_axis_cell(axis, j, t, knot.i, knot.high);
-    const float d = knot.m - cell.u0, bend = cell.c * d, mean_slope = cell.a - bend;
-    const hairlut_draw draw = {cell.x0 + d * mean_slope, fabsf(mean_slope - bend)};
+    const hairlut_place place = hairlut_axis_place(axis, u);
+    const float *knot = axis->knots + HAIRLUT_KNOT * place.i;
+    const hairlut_cell cell = hairlut_axis_cell(axis, j, hairlut_quad_sub(hairlut_quad_all(1.0f), t), t, place.i, place.high);
+    const float along = (place.m - knot[0]) * knot[1];
+    const float xi = hairlut_max(along, hairlut_constant(0.0f)), q = hairlut_max(1.0f - along, hairlut_constant(0.0f));
+    const float xi2 = xi * xi, q2 = q * q, p = xi * q, w = cell.w;
+    const float ratio = w / (w * (xi2 + q2) + (cell.d0 + cell.d1) * p);
+    const float slope = ratio * ratio * (cell.d1 * xi2 + 2.0f * w * p + cell.d0 * q2);
+    const hairlut_draw draw = {cell.x0 + ratio * (w * xi2 + cell.d0 * p), fabsf(slope * knot[1])};
     return draw;
 }
 
-/* |dx/du| at x, which look_up found. */
-HAIRLUT_INLINE float hairlut_axis_slope(const hairlut_axis *axis, hairlut_found found, float x)
-{
-    int high;
-    const hairlut_cell cell = hairlut_axis_found(axis, found, &high);
-    return hairlut_cell_slope(&cell, x);
-}
-
 /* 1 in the domain, 0 outside. */
-static inline float hairlut_axis_holds(const hairlut_axis *axis, float x)
+static inline float hairlut_axis_contains(const hairlut_axis *axis, float x)
 {
     return (float)(x >= axis->low && x <= axis->high);
 }
 
+/* The u from which hairlut_axis_sample draws x. */
 static inline float hairlut_axis_invert(const hairlut_axis *axis, float theta_r, float x)
 {
-    int high;
-    const float inside = hairlut_axis_inside(axis, x);
-    const hairlut_cell cell = hairlut_axis_found(axis, hairlut_axis_look_up(axis, theta_r, x), &high);
-    const float slope = copysignf(hairlut_cell_slope(&cell, inside), cell.a);
-    const float m = hairlut_clamp(cell.u0 + 2.0f * (inside - cell.x0) / (cell.a + slope), 0.0f, 1.0f);
-    return high ? 1.0f - m : m;
+    const hairlut_search search = hairlut_axis_begin_search(axis, theta_r, x);
+    const hairlut_inverse inverse = hairlut_axis_inverse(axis, &search, hairlut_axis_end_search(axis, &search));
+    const float xi = inverse.a / (inverse.a + inverse.b);
+    const float m = hairlut_clamp(inverse.knot + inverse.width * xi, 0.0f, 1.0f);
+    return inverse.high ? 1.0f - m : m;
 }
 
 #endif

@@ -33,7 +33,11 @@ static hairlut_result create(const char *directory, const hairlut_exr_table tabl
             return hairlut_fail(HAIRLUT_ERROR_ATTRIBUTE, message,
                                 "%.200s/%s.exr: hairlut.model is '%s': expected '%s', as in %s.exr beside it; bake the model again",
                                 directory, kinds[k].table, tables[k].model, tables[0].model, kinds[0].table);
-    const hairlut_model_desc desc = {tables[0].table, tables[1].table, tables[2].table, tables[1].azimuth};
+    const hairlut_lobe_desc lobes[2] = {
+        {sizeof *lobes, "direct", &tables[0].table, &tables[1].table, tables[1].azimuth},
+        {sizeof *lobes, "multiple", &tables[2].table, NULL, HAIRLUT_AZIMUTH_DIFFERENCE},
+    };
+    const hairlut_model_desc desc = {sizeof desc, 2, lobes, NULL};
     char detail[HAIRLUT_MESSAGE_SIZE];
     const hairlut_result result = hairlut_model_create(&desc, allocator, out, detail);
     if (result != HAIRLUT_OK)

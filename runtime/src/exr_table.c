@@ -125,7 +125,8 @@ static hairlut_result read_warp(const hairlut_exr_file *file, hairlut_warp *warp
     return HAIRLUT_OK;
 }
 
-static hairlut_result read_cell(const hairlut_exr_file *file, float *limit)
+/* Format 1 had a bound of a cell's curvature here, which slopes replace. */
+static hairlut_result check_cell(const hairlut_exr_file *file)
 {
     hairlut_exr_text text;
     double number = 0.0;
@@ -134,7 +135,6 @@ static hairlut_result read_cell(const hairlut_exr_file *file, float *limit)
         return result;
     if (!equals(text, "linear") && !(read_parameter(text, "parabola limit=", &number) && number >= 0.0 && number <= 0.95))
         return fail_text(file, "hairlut.cell", text, "'linear' or 'parabola limit=NUMBER' with a number from 0 to 0.95");
-    *limit = (float)number;
     return HAIRLUT_OK;
 }
 
@@ -192,29 +192,80 @@ static hairlut_result read_header(const hairlut_exr_file *file, const hairlut_ex
     if (result == HAIRLUT_OK)
         result = read_warp(file, &t->warp, &e);
     if (result == HAIRLUT_OK)
-        result = read_cell(file, &t->cell_limit);
+        result = check_cell(file);
     if (result == HAIRLUT_OK)
         result = read_pair(file, "hairlut.theta_r_range", &t->theta_r_min, &t->theta_r_max);
     if (result == HAIRLUT_OK)
         result = read_pair(file, "hairlut.domain", &t->domain_min, &t->domain_max);
     if (result == HAIRLUT_OK)
         result = check_knots(file, t->warp, e);
+    t->size = sizeof *t;
     t->warp_e = (float)e;
     t->width = file->width;
     t->height = file->height;
     return result;
 }
 
+/* dx/du at a knot between cells of D0, D1 in x and h0, h1 in u: the density there is that of both, blended linearly in x. */
+static double inner_slope(double x0, double x, double x1, double h0, double h1)
+{
+    const double d0 = x - x0, d1 = x1 - x;
+    return (d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1);
+}
+
+/* At an end of a row: a parabola's, from that at the next knot, but within a factor of 8 of the cell's mean slope. */
+static double end_slope(double mean, double next)
+{
+    const double slope = 2.0 * mean - next;
+    return slope < mean / 8.0 ? mean / 8.0 : slope > 8.0 * mean ? 8.0 * mean : slope;
+}
+
+/* Format 1 has angles alone: the slopes of a row by luts/FORMAT.md's rule. */
+static void derive_slopes(const hairlut_table *t, float *row)
+{
+    const hairlut_warp_scale scale = hairlut_scale_warp(t->warp, t->warp_e, t->width);
+    const int last = t->width - 1;
+    double before = 0.0, h0 = 0.0;
+    for (int i = 0; i < last; ++i) {
+        /* both ends of a cell counted from the nearer end of the u axis: no cancellation */
+        const int high = 2 * i >= last, near_end = high ? last - i - 1 : i;
+        const double h = hairlut_warp_u(t->warp, &scale, t->width, near_end + 1) - hairlut_warp_u(t->warp, &scale, t->width, near_end);
+        if (i > 0)
+            row[2 * i + 1] = (float)inner_slope(before, (double)row[2 * i], (double)row[2 * i + 2], h0, h);
+        if (i == 1)
+            row[1] = (float)end_slope(((double)row[2] - (double)row[0]) / h0, (double)row[3]);
+        if (i == last - 1)
+            row[2 * last + 1] = (float)end_slope(((double)row[2 * last] - (double)row[2 * i]) / h, (double)row[2 * i + 1]);
+        before = (double)row[2 * i];
+        h0 = h;
+    }
+}
+
+/* Reads angles into the second half of the texels, and makes pairs of them from the first on. Slopes of what is no table are not
+ * used: hairlut_validate refuses its angles. */
+static hairlut_result read_pairs(const hairlut_exr_file *file, const hairlut_table *t, float *texels)
+{
+    const size_t count = (size_t)t->width * (size_t)t->height;
+    const hairlut_result result = hairlut_exr_pixels(file, texels + count);
+    if (result != HAIRLUT_OK)
+        return result;
+    for (size_t k = 0; k < count; ++k)
+        texels[2 * k] = texels[count + k];
+    for (int j = 0; j < t->height; ++j)
+        derive_slopes(t, texels + 2 * (size_t)t->width * (size_t)j);
+    return HAIRLUT_OK;
+}
+
 /* The header is read before memory for the texels is asked for: the knots bound the width by the file's size. */
 static hairlut_result read_texels(const hairlut_exr_file *file, const hairlut_allocator *allocator, hairlut_exr_table *out)
 {
-    const size_t size = (size_t)file->width * (size_t)file->height * sizeof(float);
+    const size_t size = 2 * (size_t)file->width * (size_t)file->height * sizeof(float);
     char detail[HAIRLUT_MESSAGE_SIZE];
     hairlut_result result = hairlut_allocate(allocator, size, &out->texels, detail);
     if (result != HAIRLUT_OK)
         return hairlut_exr_fail(file, result, "%.200s", detail);
     out->table.texels = out->texels;
-    result = hairlut_exr_pixels(file, out->texels);
+    result = read_pairs(file, &out->table, out->texels);
     if (result != HAIRLUT_OK)
         return result;
     result = hairlut_validate(&out->table, detail);

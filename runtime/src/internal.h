@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What a model is made of. Private to the library and to the generated file of compiled-in tables. */
 #ifndef HAIRLUT_INTERNAL_H
 #define HAIRLUT_INTERNAL_H
@@ -33,20 +34,25 @@ enum { HAIRLUT_GROUP = 16, HAIRLUT_SMALL_GROUP = HAIRLUT_GROUP / 2, HAIRLUT_LINE
                                   : 256)
 #define HAIRLUT_GROUP_SIZE(columns) (HAIRLUT_IS_SMALL(columns) ? HAIRLUT_SMALL_GROUP : HAIRLUT_GROUP)
 /* Floats of a row for each cell, of a row, and of all rows */
-#define HAIRLUT_SPREAD(columns) (HAIRLUT_LINE / HAIRLUT_GROUP_SIZE(columns))
+#define HAIRLUT_ROW_FLOATS(columns) (HAIRLUT_LINE / HAIRLUT_GROUP_SIZE(columns))
 #define HAIRLUT_STRIDE(columns)                                                                                       \
-    (HAIRLUT_LINE + HAIRLUT_SPREAD(columns) * HAIRLUT_WHOLE((columns) - 1, HAIRLUT_STEP(columns)))
+    (HAIRLUT_LINE + HAIRLUT_ROW_FLOATS(columns) * HAIRLUT_WHOLE((columns) - 1, HAIRLUT_STEP(columns)))
 #define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * ((height) + 1))
 
-/* A cell of one row, seen from the end of the row that is nearer: with m = min(u, 1-u) and d = m - u0,
+/* A cell of one row, seen from the end of the row that is nearer: x0, D0, w, D1, where x0 is the angle at its nearer end, w its
+ * width, which blends without cancellation as two angles do not, and D0, D1 are h dx/dm at its ends, with m = min(u, 1-u) and h
+ * the width of the cell in m. Counted from the high end w and D are negative. The cells stand in two halves, one from the low
+ * end on and one from the high end on, so that a sample, whose place is counted from the nearer end, needs no mirroring; both
+ * go one cell beyond u = 1/2. In a half, a cell's rows follow each other: the two that a sample blends are mostly in one cache
+ * line. A cell is one load of 16 bytes.
  *
- *     x = x0 + d (a - c d),     |dx/du| = |a - 2 c d|,
+ * What depends on the column alone stands apart, once a table: u0, 1/h, and h HAIRLUT_SCALE, where u0 is m at the nearer end.
  *
- * where u0 is the cell's nearer knot, x0 its angle and a the slope there, negative if the high end is the nearer one. The
- * cells stand in two halves, one from the low end on and one from the high end on, so that a sample, whose place is counted
- * from the nearer end, needs no mirroring; both go one cell beyond u = 1/2. In a half, a cell's rows follow each other: the
- * two that a sample blends are mostly in one cache line. A cell is x0, a, c, u0: one load of 16 bytes. */
-enum { HAIRLUT_CELL = 4 /* floats */ };
+ * A slope D beyond HAIRLUT_STEEPEST times the cell's mean slope w, or below its reciprocal, counts as that bound: with cells of
+ * 1e-12 rad side by side with others, the product of two axes' densities and of 1/cos at the pole stays a float. */
+enum { HAIRLUT_CELL = 4, HAIRLUT_KNOT = 4 /* floats */ };
+#define HAIRLUT_STEEPEST 4096.0f
+#define HAIRLUT_SCALE 32768.0f
 #define HAIRLUT_PITCH(height) (HAIRLUT_CELL * ((height) + 1)) /* floats from one cell of a row to the next */
 #define HAIRLUT_HALF(columns) ((columns) / 2 + 1)              /* cells of a row */
 #define HAIRLUT_CELLS(columns, height) (2 * HAIRLUT_HALF(columns) * HAIRLUT_PITCH(height))
@@ -72,15 +78,16 @@ enum { HAIRLUT_CELL = 4 /* floats */ };
 typedef struct hairlut_axis {
     const float *rows;    /* row 0; best if aligned to a cache line */
     const float *ends[2]; /* the first cells of row 0, from the low and from the high end on; best if aligned to a cell */
+    const float *knots;   /* of a half: HAIRLUT_KNOT floats a column */
     int pitch;            /* floats from one cell of a row to the next */
-    float row_origin; /* theta_r of row 0 */
-    float row_scale;  /* rows per radian of theta_r */
-    float row_last;   /* height - 1 */
-    int warp;         /* hairlut_warp */
-    float e;          /* octaves: the cell of m is the integer part of the folded column y scale - origin, with y the float */
-    float scale;      /* whose bits are those of m + e shifted right by two; uniform: y = m */
-    float origin;     /* y scale at m = 0, rounded as when a sample is drawn, so that no column is below 0 */
-    float low; /* the domain */
+    float row_origin;     /* theta_r of row 0 */
+    float row_scale;      /* rows per radian of theta_r */
+    float row_last;       /* height - 1 */
+    int warp;             /* hairlut_warp */
+    float e;              /* octaves: the cell of m is the integer part of the folded column y scale - origin, with y the float */
+    float scale;          /* whose bits are those of m + e shifted right by two; uniform: y = m */
+    float origin;         /* y scale at m = 0, rounded as when a sample is drawn, so that no column is below 0 */
+    float low;            /* the domain */
     float high;
     int columns;
     int height;
@@ -91,22 +98,35 @@ typedef struct hairlut_axis {
 /* The bits of a float shifted right by two are those of F / 2^96, F as in warp.h. */
 #define HAIRLUT_SHIFT_SCALE 79228162514264337593543950336.0f /* 2^96 */
 
-/* The one initialiser of an axis, also of the compiled-in ones: generated code does not depend on the fields. `stored`
- * are the rows, HAIRLUT_STORED(columns, height) floats; `cells` are HAIRLUT_CELLS(columns, height) floats;
- * f0 and k are hairlut_warp_scale's, rounded to floats. */
-#define HAIRLUT_AXIS(stored, cells, columns_, height_, row_origin_, row_scale_, low_, high_, warp_, e_, f0_, k_)      \
-    {                                                                                                                 \
-        stored, {cells, (cells) + HAIRLUT_HALF(columns_) * HAIRLUT_PITCH(height_)},                                   \
-            HAIRLUT_PITCH(height_), row_origin_, row_scale_, (float)((height_) - 1), warp_, e_,                       \
-            (warp_) == HAIRLUT_WARP_OCTAVES ? HAIRLUT_SHIFT_SCALE / (k_) : 1.0f / (k_), (f0_) * (1.0f / (k_)), low_,  \
-            high_, columns_, height_, HAIRLUT_STRIDE(columns_), HAIRLUT_STEP(columns_)                                \
-    }
+/* A lobe ready for sampling. */
+typedef struct hairlut_lobe {
+    hairlut_axis theta;
+    hairlut_axis phi; /* not used where the azimuth is uniform */
+    int uniform;      /* whether it is */
+    int azimuth;      /* hairlut_azimuth */
+    char name[HAIRLUT_NAME_SIZE];
+} hairlut_lobe;
+
+/* The grid of a mixture. A node of an axis is two floats: its value, and 1 / (the next one's - its own); 0 at the last. At the
+ * grid's node (j, o), lobe k has HAIRLUT_CORNER floats from ((j*columns + o)*lobe_count + k)*HAIRLUT_CORNER on: its share, where
+ * those of a node sum to 1; its turn in [-pi, pi); and by how much that changes, along the shorter arc, to node (j+1, o). */
+enum { HAIRLUT_CORNER = 4 };
+typedef struct hairlut_mixture {
+    const float *theta_r; /* the nodes of theta_r */
+    const float *arc;     /* the asin of the nodes of the offset */
+    const float *corners;
+    int rows;     /* nodes of theta_r */
+    int columns;  /* nodes of the offset */
+    int mirrored; /* whether -h mirrors h */
+    int turned;   /* whether any turn is not 0 */
+} hairlut_mixture;
 
 struct hairlut_model {
-    hairlut_axis direct_theta;
-    hairlut_axis direct_phi;
-    hairlut_axis multiple_theta;
-    hairlut_azimuth azimuth;
+    int lobe_count;
+    int direct; /* the number of the lobe "direct", or -1 */
+    int multiple;
+    const hairlut_lobe *lobes;
+    hairlut_mixture mixture;
     hairlut_allocator allocator; /* what hairlut_free gives the memory back to; zero for compiled-in models */
 };
 
@@ -115,7 +135,7 @@ typedef struct hairlut_builtin_entry {
     hairlut_model model;
 } hairlut_builtin_entry;
 
-/* Defined by the generated file (hairlut export --to c). */
+/* Defined by the generated file (runtime/tools/embed.c). */
 extern const hairlut_builtin_entry hairlut_builtin_entries[];
 extern const int hairlut_builtin_count;
 

@@ -1,30 +1,129 @@
-/* Both lobes at once, with one density. */
-#include "lobes.h"
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Mixtures from memory: what one must fulfil, and the copy of it that is read. */
+#include <math.h>
 
-float hairlut_pdf_mixture(const hairlut_model *model, float direct_weight, float theta_r, float phi_r, float theta_i,
-                          float phi_i)
+#include "angle.h"
+#include "build.h"
+
+enum { MAX_NODES = 4096 };
+
+static const float largest_turn = 25.1327419f; /* the float next to 8 pi, above it */
+
+static hairlut_result validate_nodes(const char *axis, const float *nodes, int count, float low, float high, char *message)
 {
-    const float w = hairlut_clamp(direct_weight, 0.0f, 1.0f);
-    const float mixed = hairlut_mix(w, hairlut_pdf_direct(model, theta_r, phi_r, theta_i, phi_i),
-                                    hairlut_pdf_multiple(model, theta_r, phi_r, theta_i, phi_i));
-    return direct_weight == direct_weight ? mixed : 0.0f;
+    if (count < 1 || count > MAX_NODES)
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "mixture: %s_count is %d: expected 1 to %d", axis, count, (int)MAX_NODES);
+    if (!nodes && count > 1)
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "mixture: %s is NULL: expected %d numbers", axis, count);
+    for (int k = 0; nodes && k < count; ++k)
+        if (!(nodes[k] >= low && nodes[k] <= high && (k == 0 || nodes[k] > nodes[k - 1])))
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "mixture: %s node %d is %.9g: expected increasing numbers from %g to %g",
+                                axis, k, (double)nodes[k], (double)low, (double)high);
+    return HAIRLUT_OK;
 }
 
-hairlut_sample hairlut_sample_mixture(const hairlut_model *model, float direct_weight, float theta_r, float phi_r,
-                                      float u_lobe, float u_theta, float u_phi)
+/* Lobe k's number at node (j, o) */
+static size_t place(const hairlut_mixture_desc *desc, int k, int j, int o)
 {
-    const float w = hairlut_clamp(direct_weight, 0.0f, 1.0f);
-    hairlut_sample s;
-    float direct, multiple;
-    if (u_lobe < w) {
-        s = hairlut_sample_direct(model, theta_r, phi_r, u_theta, u_phi);
-        direct = s.pdf_angle;
-        multiple = hairlut_pdf_multiple(model, theta_r, phi_r, s.theta_i, s.phi_i);
-    } else {
-        s = hairlut_sample_multiple(model, theta_r, phi_r, u_theta, u_phi);
-        multiple = s.pdf_angle;
-        direct = hairlut_pdf_direct(model, theta_r, phi_r, s.theta_i, s.phi_i);
+    return ((size_t)k * (size_t)desc->theta_r_count + (size_t)j) * (size_t)desc->offset_count + (size_t)o;
+}
+
+static hairlut_result validate_node(const hairlut_mixture_desc *desc, int lobe_count, int j, int o, char *message)
+{
+    int shares = 0;
+    for (int k = 0; k < lobe_count; ++k) {
+        const float share = desc->share ? desc->share[place(desc, k, j, o)] : 1.0f;
+        const float turn = desc->turn ? desc->turn[place(desc, k, j, o)] : 0.0f;
+        if (!(share >= 0.0f && hairlut_is_finite(share)))
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                                "mixture: share of lobe %d at theta_r node %d, offset node %d is %.9g: expected a finite number, not below 0",
+                                k, j, o, (double)share);
+        if (!(fabsf(turn) <= largest_turn))
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                                "mixture: turn of lobe %d at theta_r node %d, offset node %d is %.9g: expected -8 pi to 8 pi", k, j, o,
+                                (double)turn);
+        shares += share > 0.0f;
     }
-    const int known = direct_weight == direct_weight && u_lobe == u_lobe && hairlut_known(theta_r, phi_r, u_theta, u_phi);
-    return hairlut_finish(s.theta_i, s.phi_i, known ? hairlut_mix(w, direct, multiple) : 0.0f);
+    if (shares == 0)
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                            "mixture: the shares at theta_r node %d, offset node %d are all 0: expected one above 0", j, o);
+    return HAIRLUT_OK;
+}
+
+hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lobe_count, char *message)
+{
+    if (!desc)
+        return HAIRLUT_OK;
+    hairlut_result result = hairlut_check_size("hairlut_mixture_desc", desc->size, sizeof *desc, message);
+    if (result == HAIRLUT_OK && desc->mirrored != 0 && desc->mirrored != 1)
+        result = hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "mixture: mirrored is %d: expected 0 or 1", desc->mirrored);
+    if (result == HAIRLUT_OK)
+        result = validate_nodes("theta_r", desc->theta_r, desc->theta_r_count, -hairlut_two_pi, hairlut_two_pi, message);
+    if (result == HAIRLUT_OK)
+        result = validate_nodes("offset", desc->offset, desc->offset_count, desc->mirrored ? 0.0f : -1.0f, 1.0f, message);
+    for (int j = 0; result == HAIRLUT_OK && j < desc->theta_r_count; ++j)
+        for (int o = 0; result == HAIRLUT_OK && o < desc->offset_count; ++o)
+            result = validate_node(desc, lobe_count, j, o, message);
+    return result;
+}
+
+size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count)
+{
+    const size_t rows = desc ? (size_t)desc->theta_r_count : 1, columns = desc ? (size_t)desc->offset_count : 1;
+    return HAIRLUT_CORNER * rows * columns * (size_t)lobe_count + 2 * rows + 2 * columns;
+}
+
+/* wrap to [-pi, pi), in double: the arc from one turn to another is the shorter one also where a float could not tell */
+static double shorter_arc(double turn)
+{
+    static const double pi = 3.14159265358979323846;
+    return turn - 2.0 * pi * floor((turn + pi) / (2.0 * pi));
+}
+
+static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lobe_count, int k, int j, int o)
+{
+    const int above = j + 1 < desc->theta_r_count ? j + 1 : j;
+    double sum = 0.0;
+    for (int l = 0; l < lobe_count; ++l)
+        sum += desc->share ? (double)desc->share[place(desc, l, j, o)] : 1.0;
+    const double turn = desc->turn ? (double)desc->turn[place(desc, k, j, o)] : 0.0;
+    const double next = desc->turn ? (double)desc->turn[place(desc, k, above, o)] : 0.0;
+    stored[0] = (float)((desc->share ? (double)desc->share[place(desc, k, j, o)] : 1.0) / sum);
+    stored[1] = (float)shorter_arc(turn);
+    stored[2] = (float)shorter_arc(next - turn);
+    stored[3] = 0.0f;
+}
+
+static void store_nodes(float *stored, const float *nodes, int count, int is_offset)
+{
+    for (int k = 0; k < count; ++k) {
+        const float node = nodes ? nodes[k] : 0.0f;
+        stored[2 * k] = is_offset ? hairlut_asin(node) : node;
+        stored[2 * k + 1] = 0.0f;
+        if (k > 0)
+            stored[2 * k - 1] = 1.0f / (stored[2 * k] - stored[2 * k - 2]);
+    }
+}
+
+void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *desc, int lobe_count, float *memory)
+{
+    const hairlut_mixture_desc plain = {sizeof plain, 1, 1, NULL, NULL, NULL, NULL, 0};
+    const hairlut_mixture_desc *d = desc ? desc : &plain;
+    float *corner = memory, *theta_r = memory + hairlut_mixture_floats(d, lobe_count) - 2 * (d->theta_r_count + d->offset_count);
+    float *arc = theta_r + 2 * d->theta_r_count;
+    mixture->corners = corner;
+    mixture->theta_r = theta_r;
+    mixture->arc = arc;
+    mixture->rows = d->theta_r_count;
+    mixture->columns = d->offset_count;
+    mixture->mirrored = d->mirrored;
+    mixture->turned = 0;
+    store_nodes(theta_r, d->theta_r, d->theta_r_count, 0);
+    store_nodes(arc, d->offset, d->offset_count, 1);
+    for (int j = 0; j < d->theta_r_count; ++j)
+        for (int o = 0; o < d->offset_count; ++o)
+            for (int k = 0; k < lobe_count; ++k, corner += HAIRLUT_CORNER) {
+                store_corner(corner, d, lobe_count, k, j, o);
+                mixture->turned |= corner[1] != 0.0f;
+            }
 }

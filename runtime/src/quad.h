@@ -43,11 +43,12 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return _mm_sub_ps(all, _mm_cvtepi32_ps(truncated));
 }
 
-static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
+static inline void hairlut_quad_lanes(hairlut_quad a, float lane[4])
 {
     lane[0] = _mm_cvtss_f32(a);
     lane[1] = _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1));
     lane[2] = _mm_cvtss_f32(_mm_movehl_ps(a, a));
+    lane[3] = _mm_cvtss_f32(_mm_shuffle_ps(a, a, 3));
 }
 
 /* x, the other lanes not used: gcc would clear them all the same, through an integer register. */
@@ -99,11 +100,9 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return vdupq_n_f32(r - (float)*integer);
 }
 
-static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
+static inline void hairlut_quad_lanes(hairlut_quad a, float lane[4])
 {
-    lane[0] = vgetq_lane_f32(a, 0);
-    lane[1] = vgetq_lane_f32(a, 1);
-    lane[2] = vgetq_lane_f32(a, 2);
+    vst1q_f32(lane, a);
 }
 
 static inline float hairlut_shifted(float s)
@@ -166,9 +165,9 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return hairlut_quad_all(r - (float)*integer);
 }
 
-static inline void hairlut_quad_first3(hairlut_quad a, float lane[3])
+static inline void hairlut_quad_lanes(hairlut_quad a, float lane[4])
 {
-    for (int l = 0; l < 3; ++l)
+    for (int l = 0; l < 4; ++l)
         lane[l] = a.lane[l];
 }
 

@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Writes models as C source, laid out ready to be read: embed DIRECTORY... > src/builtin_tables.c. Each model has its directory's
+ * name. Arrays that are equal, in one model or in several, are written once. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "internal.h"
+
+enum { MOST_ARRAYS = 8 * HAIRLUT_MAX_LOBES * 4 };
+
+typedef struct written {
+    const float *data;
+    size_t count;
+} written;
+
+static written arrays[MOST_ARRAYS];
+static int array_count;
+
+/* A float that C reads back as it is. */
+static void print_float(float x)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.9g", (double)x);
+    printf("%s%sf", text, strpbrk(text, ".e") ? "" : ".0");
+}
+
+/* The number of an array of `count` floats, written if no equal one was. */
+static int array_number(const float *data, size_t count, size_t line)
+{
+    for (int k = 0; k < array_count; ++k)
+        if (arrays[k].count == count && memcmp(arrays[k].data, data, count * sizeof *data) == 0)
+            return k;
+    if (array_count == MOST_ARRAYS) {
+        fprintf(stderr, "embed: more than %d arrays\n", (int)MOST_ARRAYS);
+        exit(1);
+    }
+    arrays[array_count].data = data;
+    arrays[array_count].count = count;
+    printf("static const float HAIRLUT_LINE_ALIGNED array_%d[%zu] = {\n", array_count, count);
+    for (size_t k = 0; k < count; ++k) {
+        print_float(data[k]);
+        fputs(k + 1 == count ? "};\n" : (k + 1) % line == 0 ? ",\n" : ",", stdout);
+    }
+    return array_count++;
+}
+
+static int rows_of(const hairlut_axis *axis)
+{
+    return array_number(axis->rows, (size_t)HAIRLUT_STORED(axis->columns, axis->height), HAIRLUT_LINE);
+}
+
+static int cells_of(const hairlut_axis *axis)
+{
+    return array_number(axis->ends[0], (size_t)HAIRLUT_CELLS(axis->columns, axis->height), 3 * HAIRLUT_CELL);
+}
+
+static int knots_of(const hairlut_axis *axis)
+{
+    return array_number(axis->knots, (size_t)(HAIRLUT_KNOT * HAIRLUT_HALF(axis->columns)), 3 * HAIRLUT_KNOT);
+}
+
+static void print_number(const char *field, float x)
+{
+    printf(".%s = ", field);
+    print_float(x);
+    fputs(", ", stdout);
+}
+
+static void print_axis(const char *field, const hairlut_axis *axis)
+{
+    printf("     .%s = {.rows = array_%d, .ends = {array_%d, array_%d + %td}, .knots = array_%d,\n      ", field, rows_of(axis), cells_of(axis),
+           cells_of(axis), axis->ends[1] - axis->ends[0], knots_of(axis));
+    print_number("row_origin", axis->row_origin);
+    print_number("row_scale", axis->row_scale);
+    print_number("row_last", axis->row_last);
+    print_number("e", axis->e);
+    print_number("scale", axis->scale);
+    print_number("origin", axis->origin);
+    print_number("low", axis->low);
+    print_number("high", axis->high);
+    printf("\n      .pitch = %d, .warp = %d, .columns = %d, .height = %d, .stride = %d, .step = %d},\n", axis->pitch, axis->warp,
+           axis->columns, axis->height, axis->stride, axis->step);
+}
+
+/* The arrays of an axis come before the struct that names them. */
+static void print_arrays(const hairlut_axis *axis)
+{
+    rows_of(axis);
+    cells_of(axis);
+    knots_of(axis);
+}
+
+static void print_lobes(const char *name, const hairlut_model *model)
+{
+    for (int k = 0; k < model->lobe_count; ++k) {
+        print_arrays(&model->lobes[k].theta);
+        if (!model->lobes[k].uniform)
+            print_arrays(&model->lobes[k].phi);
+    }
+    printf("static const hairlut_lobe lobes_%s[%d] = {\n", name, model->lobe_count);
+    for (int k = 0; k < model->lobe_count; ++k) {
+        const hairlut_lobe *lobe = &model->lobes[k];
+        printf("    {.name = \"%s\", .uniform = %d, .azimuth = %d,\n", lobe->name, lobe->uniform, lobe->azimuth);
+        print_axis("theta", &lobe->theta);
+        if (!lobe->uniform)
+            print_axis("phi", &lobe->phi);
+        puts("    },");
+    }
+    puts("};");
+}
+
+static size_t corner_floats(const hairlut_model *model)
+{
+    return (size_t)(HAIRLUT_CORNER * model->lobe_count) * (size_t)model->mixture.rows * (size_t)model->mixture.columns;
+}
+
+static int corners_of(const hairlut_model *model)
+{
+    return array_number(model->mixture.corners, corner_floats(model), (size_t)(HAIRLUT_CORNER * model->lobe_count));
+}
+
+static int theta_r_of(const hairlut_model *model)
+{
+    return array_number(model->mixture.theta_r, 2 * (size_t)model->mixture.rows, HAIRLUT_LINE);
+}
+
+static int arc_of(const hairlut_model *model)
+{
+    return array_number(model->mixture.arc, 2 * (size_t)model->mixture.columns, HAIRLUT_LINE);
+}
+
+static void print_entry(const char *name, const hairlut_model *model)
+{
+    printf("    {\"%s\", {.lobe_count = %d, .direct = %d, .multiple = %d, .lobes = lobes_%s,\n", name, model->lobe_count, model->direct,
+           model->multiple, name);
+    printf("      .mixture = {.theta_r = array_%d, .arc = array_%d, .corners = array_%d, .rows = %d, .columns = %d, .mirrored = %d, "
+           ".turned = %d}}},\n",
+           theta_r_of(model), arc_of(model), corners_of(model), model->mixture.rows, model->mixture.columns, model->mixture.mirrored,
+           model->mixture.turned);
+}
+
+/* The last part of a path. */
+static const char *name_of(const char *directory)
+{
+    const char *slash = strrchr(directory, '/');
+    return slash ? slash + 1 : directory;
+}
+
+int main(int argc, char **argv)
+{
+    hairlut_model **models = malloc((size_t)argc * sizeof *models);
+    if (argc < 2 || !models) {
+        fputs("use: embed DIRECTORY...\n", stderr);
+        return 2;
+    }
+    for (int k = 1; k < argc; ++k) {
+        char message[HAIRLUT_MESSAGE_SIZE];
+        if (hairlut_load_with(argv[k], NULL, &models[k], message) != HAIRLUT_OK) {
+            fprintf(stderr, "embed: %s\n", message);
+            return 1;
+        }
+    }
+    fputs("/* By runtime/tools/embed.c from", stdout);
+    for (int k = 1; k < argc; ++k)
+        printf(" %s", name_of(argv[k]));
+    fputs("; not to be edited. */\n#include \"internal.h\"\n\n", stdout);
+    for (int k = 1; k < argc; ++k) {
+        corners_of(models[k]), theta_r_of(models[k]), arc_of(models[k]);
+        print_lobes(name_of(argv[k]), models[k]);
+    }
+    printf("const hairlut_builtin_entry hairlut_builtin_entries[] = {\n");
+    for (int k = 1; k < argc; ++k)
+        print_entry(name_of(argv[k]), models[k]);
+    printf("};\nconst int hairlut_builtin_count = %d;\n", argc - 1);
+    for (int k = 1; k < argc; ++k)
+        hairlut_free(models[k]);
+    free(models);
+    return fflush(stdout) != 0 || ferror(stdout);
+}

@@ -75,6 +75,8 @@ def core() -> ctypes.CDLL:
     library.hairlut_free.argtypes = [ctypes.c_void_p]
     library.hairlut_free.restype = None
     library.hairlut_result_string.restype = ctypes.c_char_p
+    library.hairlut_lobe_name.restype = ctypes.c_char_p
+    library.hairlut_lobe_name.argtypes = [ctypes.c_void_p, ctypes.c_int]
     library.hairlut_pdf_to_solid_angle.restype = ctypes.c_float
     library.hairlut_pdf_to_solid_angle.argtypes = [ctypes.c_float, ctypes.c_float]
     return library
@@ -115,7 +117,8 @@ class LoadError(Exception):
 
 
 class Model:
-    """A hairlut_model; calls take scalars or arrays that broadcast, and return float32 arrays."""
+    """A hairlut_model; calls take scalars or arrays that broadcast, and return float32 arrays. A lobe is its
+    name or number; an axis is `<lobe>_theta` or `<lobe>_phi`."""
 
     def __init__(self, pointer: int, name: str, owned: bool) -> None:
         self.pointer, self.name, self.owned = ctypes.c_void_p(pointer), name, owned
@@ -127,58 +130,91 @@ class Model:
         if self.owned:
             core().hairlut_free(self.pointer)
 
-    def sample(self, lobe: str, theta_r, phi_r, u_theta, u_phi) -> np.ndarray:
+    @property
+    def lobes(self) -> list[str]:
+        """The lobes' names, in order."""
+        count = core().hairlut_lobe_count(self.pointer)
+        return [core().hairlut_lobe_name(self.pointer, k).decode() for k in range(count)]
+
+    def lobe_index(self, lobe: str | int) -> int:
+        """The number of a lobe."""
+        return lobe if isinstance(lobe, int) else core().hairlut_lobe_index(self.pointer, lobe.encode())
+
+    def sample(self, lobe: str | int, theta_r, phi_r, u_theta, u_phi) -> np.ndarray:
         """Records of SAMPLE."""
         inputs = _floats(theta_r, phi_r, u_theta, u_phi)
         out = np.empty(inputs[0].shape, SAMPLE)
-        self._loop("loop_sample", LOBES.index(lobe), *inputs, out)
+        self._loop("loop_sample", (self.lobe_index(lobe),), *inputs, out)
         return out
 
-    def pdf(self, lobe: str, theta_r, phi_r, theta_i, phi_i) -> np.ndarray:
+    def pdf(self, lobe: str | int, theta_r, phi_r, theta_i, phi_i) -> np.ndarray:
         """Densities per rad^2."""
         inputs = _floats(theta_r, phi_r, theta_i, phi_i)
         out = np.empty_like(inputs[0])
-        self._loop("loop_pdf", LOBES.index(lobe), *inputs, out)
+        self._loop("loop_pdf", (self.lobe_index(lobe),), *inputs, out)
         return out
 
-    def invert(self, lobe: str, theta_r, phi_r, theta_i, phi_i) -> tuple[np.ndarray, np.ndarray]:
+    def invert(self, lobe: str | int, theta_r, phi_r, theta_i, phi_i) -> tuple[np.ndarray, np.ndarray]:
         """(u_theta, u_phi)."""
         inputs = _floats(theta_r, phi_r, theta_i, phi_i)
         out = np.empty((*inputs[0].shape, 2), np.float32)
-        self._loop("loop_invert", LOBES.index(lobe), *inputs, out)
+        self._loop("loop_invert", (self.lobe_index(lobe),), *inputs, out)
         return out[..., 0], out[..., 1]
+
+    def sample_hair(self, theta_r, phi_r, u_lobe, u_theta, u_phi, offset=0.0, shares=None) -> np.ndarray:
+        """Records of SAMPLE. shares: None, a number a lobe, or (..., lobes) of the inputs' shape."""
+        inputs = _floats(theta_r, phi_r, offset, u_lobe, u_theta, u_phi)
+        out = np.empty(inputs[0].shape, SAMPLE)
+        self._loop("loop_sample_hair", (self._shares(shares, inputs[0]),), *inputs, out)
+        return out
+
+    def pdf_hair(self, theta_r, phi_r, theta_i, phi_i, offset=0.0, shares=None) -> np.ndarray:
+        """Densities per rad^2; shares as in sample_hair."""
+        inputs = _floats(theta_r, phi_r, offset, theta_i, phi_i)
+        out = np.empty_like(inputs[0])
+        self._loop("loop_pdf_hair", (self._shares(shares, inputs[0]),), *inputs, out)
+        return out
+
+    def _shares(self, shares, like: np.ndarray):
+        if shares is None:
+            return None
+        self._kept = np.array(
+            np.broadcast_to(np.asarray(shares, np.float32), (*like.shape, len(self.lobes))), order="C"
+        )
+        return self._kept.ctypes.data_as(ctypes.c_void_p)
 
     def axis_sample(self, axis: str, theta_r, u) -> tuple[np.ndarray, np.ndarray]:
         """(angle, density per rad) of one table."""
         inputs = _floats(theta_r, u)
         x, pdf = np.empty_like(inputs[0]), np.empty_like(inputs[0])
-        self._loop("axis_sample", AXES.index(axis), *inputs, x, pdf)
+        self._loop("axis_sample", self._axis(axis), *inputs, x, pdf)
         return x, pdf
 
     def axis_pdf(self, axis: str, theta_r, x) -> np.ndarray:
         """Density per rad of one table."""
-        inputs = _floats(theta_r, x)
-        out = np.empty_like(inputs[0])
-        self._loop("axis_pdf", AXES.index(axis), *inputs, out)
-        return out
+        return self._axis_loop("axis_pdf", axis, theta_r, x)
 
     def axis_invert(self, axis: str, theta_r, x) -> np.ndarray:
         """u of an angle of one table."""
-        inputs = _floats(theta_r, x)
-        out = np.empty_like(inputs[0])
-        self._loop("axis_invert", AXES.index(axis), *inputs, out)
-        return out
+        return self._axis_loop("axis_invert", axis, theta_r, x)
 
     def axis_cell_width(self, axis: str, theta_r, x) -> np.ndarray:
-        """Width of the cell that holds an angle of one table."""
+        """Width of the cell that contains an angle of one table."""
+        return self._axis_loop("axis_cell_width", axis, theta_r, x)
+
+    def _axis(self, axis: str) -> tuple[int, int]:
+        lobe, angle = axis.rsplit("_", 1)
+        return self.lobe_index(lobe), ("theta", "phi").index(angle)
+
+    def _axis_loop(self, function: str, axis: str, theta_r, x) -> np.ndarray:
         inputs = _floats(theta_r, x)
         out = np.empty_like(inputs[0])
-        self._loop("axis_cell_width", AXES.index(axis), *inputs, out)
+        self._loop(function, self._axis(axis), *inputs, out)
         return out
 
-    def _loop(self, function: str, which: int, *arrays: np.ndarray) -> None:
+    def _loop(self, function: str, which: tuple, *arrays: np.ndarray) -> None:
         pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in arrays]
-        getattr(loops(), function)(self.pointer, which, ctypes.c_size_t(arrays[0].size), *pointers)
+        getattr(loops(), function)(self.pointer, *which, ctypes.c_size_t(arrays[0].size), *pointers)
 
 
 def _floats(*values) -> list[np.ndarray]:

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from runtime.c_library import AXES, MESSAGE_SIZE, OK, ROOT, LoadError, Model, core
+from runtime.c_library import MESSAGE_SIZE, OK, ROOT, LoadError, Model, core
+
+from hairlut.warp import Warp
 
 HALF_PI = np.float32(np.pi / 2)
 TWO_PI = np.float32(2 * np.pi)
@@ -16,16 +18,41 @@ DIFFERENCE, SUM = 0, 1
 
 class CTable(ctypes.Structure):
     _fields_ = [
+        ("size", ctypes.c_size_t),
         ("texels", ctypes.POINTER(ctypes.c_float)),
         *((name, ctypes.c_int) for name in ("width", "height")),
         *((name, ctypes.c_float) for name in ("theta_r_min", "theta_r_max", "domain_min", "domain_max")),
         ("warp", ctypes.c_int),
-        *((name, ctypes.c_float) for name in ("warp_e", "cell_limit")),
+        ("warp_e", ctypes.c_float),
+    ]
+
+
+class CLobe(ctypes.Structure):
+    _fields_ = [
+        ("size", ctypes.c_size_t),
+        ("name", ctypes.c_char_p),
+        ("theta", ctypes.POINTER(CTable)),
+        ("phi", ctypes.POINTER(CTable)),
+        ("azimuth", ctypes.c_int),
+    ]
+
+
+class CMixture(ctypes.Structure):
+    _fields_ = [
+        ("size", ctypes.c_size_t),
+        *((name, ctypes.c_int) for name in ("theta_r_count", "offset_count")),
+        *((name, ctypes.POINTER(ctypes.c_float)) for name in ("theta_r", "offset", "share", "turn")),
+        ("mirrored", ctypes.c_int),
     ]
 
 
 class CDescription(ctypes.Structure):
-    _fields_ = [*((name, CTable) for name in AXES), ("azimuth", ctypes.c_int)]
+    _fields_ = [
+        ("size", ctypes.c_size_t),
+        ("lobe_count", ctypes.c_int),
+        ("lobes", ctypes.POINTER(CLobe)),
+        ("mixture", ctypes.POINTER(CMixture)),
+    ]
 
 
 Allocate = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
@@ -36,36 +63,61 @@ class CAllocator(ctypes.Structure):
     _fields_ = [("allocate", Allocate), ("release", Release), ("user", ctypes.c_void_p)]
 
 
+def _floats(array: np.ndarray | None):
+    return None if array is None else array.ctypes.data_as(ctypes.POINTER(ctypes.c_float))
+
+
 @dataclass
 class MemoryTable:
-    """hairlut_table, in Python."""
+    """hairlut_table, in Python. texels: (height, width, 2), angles and dx/du."""
 
     texels: np.ndarray | None
     domain: tuple[float, float] = (-HALF_PI, HALF_PI)
     theta_r_range: tuple[float, float] = (-HALF_PI, HALF_PI)
     warp: int = OCTAVES
     warp_e: float = 2.0**-18
-    cell_limit: float = 0.9
     size: tuple[int, int] | None = None  # width, height, where the texels' shape is not to be told
 
     def c(self) -> CTable:
         """The structure; it borrows the texels."""
         if self.texels is None:
-            pointer, (width, height) = None, self.size
+            width, height = self.size
         else:
             self.texels = np.ascontiguousarray(self.texels, np.float32)
-            pointer = self.texels.ctypes.data_as(ctypes.POINTER(ctypes.c_float))
-            width, height = self.size or self.texels.shape[::-1]
-        return CTable(
-            pointer, width, height, *self.theta_r_range, *self.domain, self.warp, self.warp_e, self.cell_limit
-        )
+            width, height = self.size or self.texels.shape[1::-1]
+        size = ctypes.sizeof(CTable)
+        numbers = *self.theta_r_range, *self.domain, self.warp, self.warp_e
+        return CTable(size, _floats(self.texels), width, height, *numbers)
+
+
+def knots(width: int, warp: int = OCTAVES, warp_e: float = 2.0**-18) -> np.ndarray:
+    """u of the columns."""
+    return Warp("octaves" if warp == OCTAVES else "uniform", float(np.float32(warp_e))).u(width)
+
+
+def with_slopes(x: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Rows of angles at the knots u, with the slopes of format 1 (luts/FORMAT.md): at an inner knot the
+    density is that of both cells beside it, blended linearly in x; at an end it is a parabola's, bounded."""
+    x = np.asarray(x, np.float32).astype(float)
+    widths, h = np.diff(x, axis=-1), np.diff(u)
+    before, after, h0, h1 = widths[..., :-1], widths[..., 1:], h[:-1], h[1:]
+    slopes = np.empty_like(x)
+    slopes[..., 1:-1] = (before + after) / (after * h0 / before + before * h1 / after)
+    for end, inner, cell in ((0, 1, 0), (-1, -2, -1)):
+        mean = widths[..., cell] / h[cell]
+        slopes[..., end] = np.clip(2 * mean - slopes[..., inner], mean / 8, 8 * mean)
+    return np.stack([x, slopes], axis=-1).astype(np.float32)
 
 
 def straight(domain=(-HALF_PI, HALF_PI), width=8, height=3, **options) -> MemoryTable:
-    """A table whose texels are evenly spaced."""
+    """A table whose angles are evenly spaced."""
     row = np.linspace(*domain, width, dtype=np.float32)
     row[[0, -1]] = domain
-    return MemoryTable(np.tile(row, (height, 1)), domain, **options)
+    table = MemoryTable(None, domain, **options)
+    possible = table.warp == UNIFORM or (table.warp == OCTAVES and 1e-12 <= table.warp_e <= 1)
+    u = knots(width, table.warp, table.warp_e) if possible else np.linspace(0, 1, width)
+    table.texels = np.tile(with_slopes(row, u), (height, 1, 1))
+    return table
 
 
 def validate(table: MemoryTable) -> tuple[int, str]:
@@ -101,23 +153,83 @@ class Allocator:
         del self.alive[address]
 
 
-def create(
+@dataclass
+class Lobe:
+    """hairlut_lobe_desc, in Python."""
+
+    name: str | None
+    theta: MemoryTable | None
+    phi: MemoryTable | None = None
+    azimuth: int = DIFFERENCE
+
+
+@dataclass
+class Mixture:
+    """hairlut_mixture_desc, in Python. share, turn: (lobes, theta_r, offset)."""
+
+    theta_r: np.ndarray | None = None
+    offset: np.ndarray | None = None
+    share: np.ndarray | None = None
+    turn: np.ndarray | None = None
+    mirrored: int = 0
+    counts: tuple[int, int] | None = None  # where the lengths of the nodes are not to be told
+
+    def c(self) -> CMixture:
+        """The structure; it borrows the arrays."""
+        names = ("theta_r", "offset", "share", "turn")
+        for name in names:
+            if getattr(self, name) is not None:
+                setattr(self, name, np.ascontiguousarray(getattr(self, name), np.float32))
+        lengths = [1 if nodes is None else len(nodes) for nodes in (self.theta_r, self.offset)]
+        arrays = [_floats(getattr(self, name)) for name in names]
+        return CMixture(ctypes.sizeof(CMixture), *(self.counts or lengths), *arrays, self.mirrored)
+
+
+class Description:
+    """A hairlut_model_desc and what it points to. Lobes that name one table share its descriptor."""
+
+    def __init__(self, lobes: list[Lobe], mixture: Mixture | None = None) -> None:
+        tables = {id(t): t for lobe in lobes for t in (lobe.theta, lobe.phi) if t is not None}
+        self.tables = {key: t.c() for key, t in tables.items()}
+        self.lobes = (CLobe * max(len(lobes), 1))(*(self._lobe(lobe) for lobe in lobes))
+        self.mixture = mixture and mixture.c()
+        points = ctypes.pointer(self.mixture) if mixture else None
+        self.c = CDescription(ctypes.sizeof(CDescription), len(lobes), self.lobes, points)
+        self.borrowed = lobes, mixture
+
+    def _lobe(self, lobe: Lobe) -> CLobe:
+        theta, phi = (t and ctypes.pointer(self.tables[id(t)]) for t in (lobe.theta, lobe.phi))
+        return CLobe(ctypes.sizeof(CLobe), lobe.name and lobe.name.encode(), theta, phi, lobe.azimuth)
+
+    def create(self, allocator: "Allocator | None" = None) -> Model:
+        """hairlut_model_create; LoadError if it refuses."""
+        hooks = ctypes.byref(allocator.c()) if allocator else None
+        out, message = ctypes.c_void_p(1), ctypes.create_string_buffer(MESSAGE_SIZE)
+        result = core().hairlut_model_create(ctypes.byref(self.c), hooks, ctypes.byref(out), message)
+        if result != OK:
+            assert out.value is None
+            raise LoadError(result, message.value.decode())
+        return Model(out.value, "memory", owned=True)
+
+
+def two_lobes(
     direct_theta: MemoryTable | None = None,
     direct_phi: MemoryTable | None = None,
     multiple_theta: MemoryTable | None = None,
     azimuth: int = DIFFERENCE,
-    allocator: Allocator | None = None,
+) -> list[Lobe]:
+    """Lobes "direct" and "multiple". Tables left out are straight ones."""
+    return [
+        Lobe("direct", direct_theta or straight(), direct_phi or straight((0.0, TWO_PI)), azimuth),
+        Lobe("multiple", multiple_theta or straight()),
+    ]
+
+
+def create(
+    *parts: MemoryTable, allocator: Allocator | None = None, mixture: Mixture | None = None, **named
 ) -> Model:
-    """hairlut_model_create; LoadError if it refuses. Tables left out are straight ones."""
-    parts = direct_theta or straight(), direct_phi or straight((0.0, TWO_PI)), multiple_theta or straight()
-    description = CDescription(*(part.c() for part in parts), azimuth)
-    hooks = ctypes.byref(allocator.c()) if allocator else None
-    out, message = ctypes.c_void_p(1), ctypes.create_string_buffer(MESSAGE_SIZE)
-    result = core().hairlut_model_create(ctypes.byref(description), hooks, ctypes.byref(out), message)
-    if result != OK:
-        assert out.value is None
-        raise LoadError(result, message.value.decode())
-    return Model(out.value, "memory", owned=True)
+    """The model of two_lobes."""
+    return Description(two_lobes(*parts, **named), mixture).create(allocator)
 
 
 def copy_model(folder: Path, model: str = "fitted") -> Path:

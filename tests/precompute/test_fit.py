@@ -1,6 +1,5 @@
 """Fits: what was drawn is found again, and what a fit promises is what its baked tables then cost."""
 
-import csv
 import json
 import tomllib
 
@@ -9,9 +8,8 @@ import pytest
 from scipy import stats
 
 from hairlut import cli, exr, interpolant, modelfile
-from hairlut.errors import HairlutError
 from hairlut.fit.decompose import mixture
-from hairlut.fit.distribution import of_grid, of_samples, read
+from hairlut.fit.distribution import of_grid, of_samples
 from hairlut.fit.files import write_all
 from hairlut.fit.model import fit
 from hairlut.lobes import TABLES
@@ -165,28 +163,7 @@ def test_baked_tables_cost_what_the_fit_promised(grid, tmp_path):
     np.testing.assert_allclose(cost, found.masses, atol=4e-3)
 
 
-# ---- reading
-
-
-def write_csv(path, names, columns):
-    with path.open("w", newline="") as file:
-        file.write("# a comment\n")
-        csv.writer(file).writerows([names, *zip(*columns, strict=True)])
-
-
-def test_csv_grid_npz_grid_and_degrees_are_the_same_data(grid, tmp_path):
-    theta_r, theta_i, phi, value = grid
-    points = [c.ravel() for c in np.meshgrid(theta_r, theta_i, phi, indexing="ij")]
-    write_csv(
-        tmp_path / "a.csv",
-        ["theta_r_deg", "theta_i_deg", "phi_deg", "value"],
-        [*map(np.degrees, points), value.ravel()],
-    )
-    np.savez(tmp_path / "b.npz", theta_r=theta_r, theta_i=theta_i, phi=phi - np.pi, value=value)
-    expected = of_grid(*grid)
-    np.testing.assert_allclose(read(tmp_path / "a.csv").mass, expected.mass, atol=1e-12)
-    turned = read(tmp_path / "b.npz")
-    np.testing.assert_allclose(turned.mass, np.roll(expected.mass, 36, axis=2), atol=1e-12)
+# ---- data
 
 
 def test_a_density_per_steradian_gains_the_cosine():
@@ -204,28 +181,6 @@ def test_a_grid_point_on_the_seam_owns_both_of_its_sides():
     data = of_grid([0.0], theta_i, phi, value)
     np.testing.assert_allclose(data.mass[0].sum(axis=0)[[0, -1]], 0.5)
     assert data.mass[0].sum() == pytest.approx(1.0)
-
-
-MISTAKES = {
-    "no column": ("theta_r,theta_i,value\n0,0,1\n", "expected a column phi or phi_deg"),
-    "text": ("theta_r,theta_i,phi\n0,zero,1\n", "not a table of numbers"),
-    "short line": ("theta_r,theta_i,phi\n0,0\n", "not a table of numbers"),
-    "NaN": ("theta_r,theta_i,phi,value\n0,0,1,nan\n", r"value is not a finite number at \[0\]"),
-    "degrees": ("theta_r,theta_i,phi\n30,-30,180\n", "named _deg"),
-    "negative": ("theta_r,theta_i,phi,value\n0.5,0,1,-2\n", r"negative value at theta_r = 28\.65 deg"),
-    "no mass": ("theta_r,theta_i,phi,value\n0.5,0,1,0\n", r"no mass at theta_r = 28\.65 deg"),
-    "empty": ("", "empty"),
-    "header only": ("theta_r,theta_i,phi\n", "no data below the header"),
-}
-
-
-@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda name: name.replace(" ", "-"))
-def test_a_mistake_in_the_data_is_named(mistake, tmp_path):
-    text, said = MISTAKES[mistake]
-    (tmp_path / "data.csv").write_text(text)
-    with pytest.raises(HairlutError, match=said) as caught:
-        read(tmp_path / "data.csv")
-    assert "data.csv" in str(caught.value)
 
 
 def test_the_command_writes_models_numbers_and_a_picture(grid, tmp_path, capsys):

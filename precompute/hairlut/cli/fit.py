@@ -9,7 +9,7 @@ from ..fit.decompose import PARTS
 from ..fit.distribution import CELLS, ROWS
 from ..fit.family import LOBES as FAMILY_LOBES
 from ..fit.family import SHAPES
-from ..fit.offsets import holds_offsets
+from ..fit.read import Draws, Grid, read
 
 Report = Callable[[str, float], None]
 
@@ -18,10 +18,11 @@ EXAMPLES = """examples:
   hairlut fit bsdf_grid.npz --measure solid-angle && hairlut bake --model fits/bsdf_grid_masses.npz
   hairlut fit offsets.npz && hairlut bake --model fits/offsets --size 64x37 --out baked/offsets
 the data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
-CSV, or arrays of these names as npz. A full grid of value is a density; anything else is samples, weighed
-by value. An npz with an array offset (increasing, in [-1, 1]: where across its width the fibre is hit) and a
-value of four axes (offset, theta_r, theta_i, phi) becomes a family: a model file for each lobe, and a text
-file of their weights and turns, in a directory (see the module hairlut.fit.familyfiles)."""
+CSV, or arrays of these names as npz. Coordinates that repeat are a grid, which must have each point once, and
+value is a density there. Otherwise each row is a draw, and value, which may be left out, its weight. A grid
+with a column offset (within [-1, 1]: where across its width the fibre is hit), or an npz whose value has
+four axes (offset, theta_r, theta_i, phi), becomes a family: a model file for each lobe, and a text file of
+their weights and turns, in a directory (see the module hairlut.fit.familyfiles)."""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
@@ -81,21 +82,22 @@ def run(args: argparse.Namespace) -> int:
         def report(stage: str, share: float) -> None:
             progress.update(task, description=stage, completed=share)
 
-        said, paths = (_family if holds_offsets(args.data) else _model)(args, report)
+        data = read(args.data)
+        print(f"{args.data}: {data}")
+        said, paths = (_model if data.offset is None else _family)(data, args, report)
     print(said)
     print("\n" + "\n".join(map(str, paths)))
     return 0
 
 
-def _model(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
+def _model(data: Grid | Draws, args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
     """Both models of one distribution: what to say, and what was written."""
-    from ..fit.distribution import read
+    from ..fit.distribution import of_data
     from ..fit.files import text, write_all
     from ..fit.model import fit
 
     name = args.name or args.data.stem
-    data = read(args.data, args.measure == "solid-angle", args.rows, CELLS)
-    result = fit(data, args.lobes, report=report)
+    result = fit(of_data(data, args.measure == "solid-angle", args.rows, CELLS), args.lobes, report=report)
     paths = list(write_all(result, args.out, name))
     if not args.no_plot:
         report("plotting", 0.0)
@@ -103,16 +105,19 @@ def _model(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
     return text(result), paths
 
 
-def _family(args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
+def _family(data: Grid | Draws, args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
     """The family of a grid over offsets, likewise."""
     from ..fit.family import fit_family
     from ..fit.familyfiles import text, write_family
-    from ..fit.offsets import read
+    from ..fit.offsets import of_data
 
     if args.lobes != "both":
         raise HairlutError(f"--lobes {args.lobes}: {args.data} has offsets: use --lobes-per-offset")
-    data = read(args.data, args.measure == "solid-angle")
-    family = fit_family(data, args.lobes_per_offset, args.shapes_per_lobe, report)
+    if isinstance(data, Draws):
+        raise HairlutError(f"{args.data}: draws with offsets: expected a grid of values over the offset")
+    family = fit_family(
+        of_data(data, args.measure == "solid-angle"), args.lobes_per_offset, args.shapes_per_lobe, report
+    )
     folder = args.out / (args.name or args.data.stem)
     written = write_family(family, folder)
     return text(family), [folder, written[-1]]

@@ -13,7 +13,6 @@ import numpy as np
 
 from . import exr
 from .axis import AXIS, axis_numbers
-from .errors import HairlutError
 from .files import write_whole
 from .table import Table
 
@@ -44,18 +43,6 @@ def write_raw(table: Table, errors: Errors, folder: Path) -> list[Path]:
         write_whole(base.with_suffix(".f32"), np.ascontiguousarray(table.texels, "<f4").tobytes()),
         write_whole(base.with_suffix(".json"), text.encode("ascii")),
     ]
-
-
-def read_raw(path: Path) -> tuple[np.ndarray, dict]:
-    """(texels (height, width), sidecar) from the path of a sidecar, whose size the texels must have."""
-    description = json.loads(path.read_text(encoding="ascii"))
-    shape = description["height"], description["width"]
-    texels = np.fromfile(path.with_name(description["file"]), "<f4")
-    if texels.size != shape[0] * shape[1]:
-        raise HairlutError(
-            f"{description['file']}: {texels.size} floats, expected width*height = {shape[1]}*{shape[0]}"
-        )
-    return texels.reshape(shape), description
 
 
 def write_npz(table: Table, errors: Errors, folder: Path) -> list[Path]:

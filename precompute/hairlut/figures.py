@@ -1,9 +1,12 @@
 """One look for all figures: colours that colour-blind readers can tell apart, and files that are the same
 every time."""
 
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib
+
+from .files import write_whole
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -34,15 +37,20 @@ STYLE = {
 
 
 def new(rows: int = 1, columns: int = 1, size: tuple[float, float] = (8, 5), **options):
-    """(figure, axes) in the style of the report."""
+    """(figure, axes) in this style."""
     plt.rcParams.update(STYLE)
     return plt.subplots(rows, columns, figsize=size, layout="constrained", **options)
 
 
-def save(figure, path: Path) -> Path:
-    """Writes the figure and lets go of it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    metadata = {"Date": None} if path.suffix == ".svg" else {}
-    figure.savefig(path, dpi=150, metadata=metadata)
+def encoded(figure, kind: str = "png", dpi: int = 150) -> bytes:
+    """The figure as a file of this kind, "png" or "svg", the same bytes every time; the figure is closed."""
+    data = BytesIO()
+    unfixed = "Date" if kind == "svg" else "Software"  # what would change the bytes
+    figure.savefig(data, format=kind, dpi=dpi, metadata={unfixed: None})
     plt.close(figure)
-    return path
+    return data.getvalue()
+
+
+def save(figure, path: Path, dpi: int = 150) -> Path:
+    """Writes the figure to a .png or .svg and closes it."""
+    return write_whole(path, encoded(figure, path.suffix[1:], dpi))

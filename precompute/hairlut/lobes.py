@@ -11,8 +11,6 @@ from functools import partial
 
 import numpy as np
 
-from .errors import HairlutError
-
 HALF_PI = np.pi / 2
 DEGREE = np.pi / 180
 
@@ -152,10 +150,3 @@ def _model(name: str, azimuth: str, direct_theta: Moments, mean_text: str) -> Mo
 PRINTED = _model("printed", SUM, _printed_direct_theta, "(3 theta_r - 2 * pi/180)")
 FITTED = _model("fitted", DIFFERENCE, _fitted_direct_theta, "(3 theta_r - 2) * pi/180")
 MODELS = {model.name: model for model in (PRINTED, FITTED)}
-
-
-def find_model(name: str) -> Model:
-    """The model "printed" or "fitted"; HairlutError for any other name."""
-    if name not in MODELS:
-        raise HairlutError(f"model {name!r} is not known: expected one of {', '.join(MODELS)}")
-    return MODELS[name]

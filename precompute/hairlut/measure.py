@@ -78,10 +78,6 @@ class Errors:
         return float(self.variance.max())
 
     @property
-    def worst_theta_r(self) -> float:
-        return float(self.theta_r[self.variance.argmax()])
-
-    @property
     def largest_weight(self) -> float:
         return float(self.weight.max())
 

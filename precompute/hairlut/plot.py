@@ -93,32 +93,3 @@ def plot_file(path: Path, lobe: Lobe, out: Path) -> Path:
 
     table, _ = exr.read(path)
     return plot_table(table, measure(table, lobe), out / f"{table.model}_{table.name}.png")
-
-
-def plot_lobe_and_texture(table: Table, path: Path) -> Path:
-    """The README's picture: a lobe over all directions, the texture that holds it, and one draw through
-    it."""
-    figure, (left, middle, right) = figures.new(1, 3, size=(14, 4.3), width_ratios=(1.05, 1.05, 1.0))
-    lobe_map(left, table)
-    left.set_title(f"A lobe: {table.model}/{table.name}")
-    texture(middle, table)
-    middle.set_title(f"Its texture: {table.width}x{table.height} floats, {table.texels.nbytes / 1024:.0f} KB")
-    _one_draw(right, table)
-    return figures.save(figure, path)
-
-
-def _one_draw(panel, table: Table, theta_r: float = np.radians(35.0)) -> None:
-    """Ten thousand draws of one row against the lobe."""
-    from .interpolant import sample
-
-    u = (np.arange(10_000) + 0.5) / 10_000
-    x, _ = sample(table, np.full(u.shape, theta_r), np.random.default_rng(1).permutation(u))
-    panel.hist(np.degrees(x), bins=60, density=True, color=figures.ORANGE, alpha=0.6, label="10 000 draws")
-    angles, q = curve(table, theta_r)
-    panel.plot(np.degrees(angles), np.radians(q), color=figures.BLUE, label="density of the table")
-    panel.set(
-        xlabel=f"{NAMES[table.angle]} [deg]", ylabel="density [1/deg]",
-        xlim=_degrees(table.domain), ylim=(0, None),
-        title=f"Draws at theta_r = {np.degrees(theta_r):.0f} deg",
-    )  # fmt: skip
-    panel.legend(fontsize=8.5)

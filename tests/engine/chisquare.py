@@ -6,17 +6,12 @@ pools cells whose expected count is below 5; the p-value comes from `mitsuba.mat
 a sample in a cell of zero density rejects.
 """
 
-import math
-
 import numpy as np
+
+from report.hairscene.nearfield import direction
 
 POOL_BELOW = 5.0
 THETA_PLACES, PHI_PLACES = (48, 8)  # midpoints per cell: the density of a table jumps where its cells meet
-
-
-def direction(mi, theta, phi):
-    """The local direction of fibre angles: y along the fibre, phi from z (the normal) towards x."""
-    return mi.Vector3f(math.cos(theta) * math.sin(phi), math.sin(theta), math.cos(theta) * math.cos(phi))
 
 
 def interaction(mi, theta_r, phi_r):

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from report.hairscene.luminance import luminance
+
 SIZE = (24, 20)
 BATCHES, SPP = 12, 48
 SIGMAS = 3.0
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 ONE_SCATTERING = {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1}
 PATH = {"type": "path", "max_depth": 6, "rr_depth": 100}
 TILT = 0.1  # of the wrong density, relative, across the fibre
@@ -83,7 +84,7 @@ def batch_means(mi, scene, first_seed, batches=BATCHES, spp=SPP):
     """Mean luminance of independent renders; every pixel must be finite."""
     images = [np.array(mi.render(scene, spp=spp, seed=first_seed + k)) for k in range(batches)]
     assert np.all(np.isfinite(images))
-    return np.mean(np.array(images, dtype=np.float64) @ LUMINANCE, axis=(1, 2))
+    return luminance(images).mean(axis=(1, 2))
 
 
 def deviation(means, reference):

@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from engine.chisquare import cell_masses, direction, interaction, p_value, sample_angles
+from engine.chisquare import cell_masses, interaction, p_value, sample_angles
+
+from report.hairscene.nearfield import direction
 
 HAIR = {"type": "hair", "longitudinal_roughness": 0.5, "azimuthal_roughness": 0.5}
 # (theta_r, phi_r) in degrees: facing, tilted both ways, across the fibre's edge, along the fibre, from behind

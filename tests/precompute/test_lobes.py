@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hairlut.errors import HairlutError
-from hairlut.lobes import FITTED, MODELS, PRINTED, find_model
+from hairlut.lobes import FITTED, MODELS, PRINTED
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -77,8 +76,3 @@ def test_printed_reading_is_the_text():
     )
     assert PRINTED.direct_phi.azimuth == "sum"
     assert FITTED.direct_phi.azimuth == "difference"
-
-
-def test_unknown_model():
-    with pytest.raises(HairlutError, match=r"'mine' is not known.*printed, fitted"):
-        find_model("mine")

@@ -108,7 +108,8 @@ def _study(out: Path, luts: Path, bench: Path) -> list[Path]:
 
 
 def _pictures(out: Path, luts: Path, bench: Path) -> list[Path]:
-    from hairlut import exr, plot
+    from hairlut import exr
+    from report import lobe_and_texture
 
     shown, _ = exr.read(luts / "fitted" / "direct_theta.exr")
-    return [plot.plot_lobe_and_texture(shown, out / "lobe_and_texture.png")]
+    return [lobe_and_texture.draw(shown, out / "lobe_and_texture.png")]

@@ -9,11 +9,10 @@ import argparse
 import json
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from scipy.stats import norm
 
-from hairlut import modelfile
+from hairlut import figures, modelfile
 from hairlut.files import write_whole
 from hairlut.fit.family import LOBES
 from hairlut.lobes import FITTED
@@ -32,10 +31,8 @@ from report.fitted_hair import (
 )
 from report.hairscene.nearfield import LIT
 from report.hairscene.offsets import FINE
+from report.markdown import table
 from report.places import ROOT
-
-matplotlib.use("Agg")
-from matplotlib import pyplot
 
 EXAMPLE = ROOT / "precompute" / "examples" / "wrapped_azimuth.py"
 FAMILY, MODEL, ITS_OWN = "family over offsets", "one fitted model", "its own"
@@ -76,18 +73,15 @@ V / V' times in general. The offset is random, as it is within a pixel; what it 
 no sampler of directions takes away. The viewers stand half-way between the grid's.
 
 {constant}
-
 In light with a bright window and a small lamp (the light itself makes most of this variance):
 
 {contrasted}
-
 A picture of {image}: one scattering found by BSDF sampling alone, in sky and lamps. Variance of a pixel at
 one sample, relative to the squared mean of the image, with its standard error. The time is of the whole
 picture, in processor time, relative to the BSDF's own sampler, which is Mitsuba's `hair` itself: the samplers
 took turns, batch by batch, and the median is given with its quartiles.
 
 {render}
-
 ## Verdict
 
 "Tables fitted in seconds sample an arbitrary hair BSDF as well as the sampler its authors derived by hand":
@@ -95,7 +89,6 @@ took turns, batch by batch, and the median is given with its quartiles.
 {verdict}
 
 {lines}
-
 "Samples" and "picture" are relative to the BSDF's own sampler: samples needed in constant light, the mean
 of the three viewers; variance of the picture, also multiplied by its time, with standard errors. Seconds are
 of one core.
@@ -104,7 +97,6 @@ Largest weights, value over density relative to the light at the same offset, of
 least {lit:g} of the brightest light goes (96 x 108 directions x 17 offsets, the largest of three viewers):
 
 {weights}
-
 A weight of w makes one draw count w times the mean: where it meets a lamp, that is a firefly.
 
 ## How many offsets, how many lobes
@@ -113,7 +105,6 @@ By calculation, without tables: V left by a family that is fitted to N offsets, 
 fibre from its middle to its rim, and drawn from at {fine}. The last column is what no sampler takes away.
 
 {offsets}
-
 {lobes} lobes on {count_offsets} offsets are what this page's family has: hair has as many highlights of
 different widths along the fibre. With one lobe less, two highlights share one, and what they make together is
 no shape that turns with the offset. One lobe more finds nothing.
@@ -136,13 +127,9 @@ density that the draws really have, in closed form (`hairscene/owndensity.py`), 
 {corrected}
 
 {biases}
-
 ## What one model can and cannot do
 
-| hair | this model | plain marginals |
-|---|---|---|
 {marginals}
-
 This is against the mean over the offset: two tables and a mixture weight lose no more. The rest of its V
 above comes from the offset: the tables, which have no axis for it, spread over all of its highlights.
 
@@ -176,11 +163,6 @@ family over offsets needs at most {close:.0%} more samples than that sampler in 
 picture has at most {close:.0%} more variance at equal time. Its picture takes {times} times as long. To fit
 and bake takes {seconds} seconds of one core, to evaluate the BSDF on the grid before that {evaluate}. One
 model for all offsets has {ones} times the variance of that sampler."""
-
-
-def table(head: list[str], rows: list[list[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
 
 
 def variances(hairs: dict, light: str) -> str:
@@ -290,6 +272,12 @@ def offsets(hairs: dict) -> str:
     return table(["hair", "N", *lobes, "drawn exactly"], rows)
 
 
+def marginals(hairs: dict) -> str:
+    found = {name: hair["predicted"] for name, hair in hairs.items()}
+    rows = [[name, *(f"{v[key]:.4f}" for key in ("masses", "marginals"))] for name, v in found.items()]
+    return table(["hair", "this model", "plain marginals"], rows)
+
+
 def weights(hairs: dict) -> str:
     rows = [
         [name, *(f"{max(row[kind]['largest_weight'] for row in hair['viewers']):.1f}" for kind in WEIGHED)]
@@ -385,16 +373,16 @@ def picture(path: Path) -> None:
     """Cut and wrapped Gaussian in azimuth, side by side, at three viewer inclinations."""
     wrapped = modelfile.find(str(EXAMPLE)).direct_phi
     phi = np.linspace(0, 2 * np.pi, 721)
-    figure, axes = pyplot.subplots(1, 3, figsize=(9.6, 2.8), sharey=True)
+    figure, axes = figures.new(1, 3, size=(9.6, 2.8), sharey=True)
+    lobes = (FITTED.direct_phi, figures.RED, "--", "cut"), (wrapped, figures.BLUE, "-", "wrapped")
     for ax, degrees in zip(axes, (0, 60, 85), strict=True):
-        for lobe, style, label in ((FITTED.direct_phi, "C3--", "cut"), (wrapped, "C0-", "wrapped")):
+        for lobe, colour, style, label in lobes:
             density = np.exp(lobe.log_density(phi, np.full(1, np.radians(degrees))))
-            ax.plot(np.degrees(phi), density / np.trapezoid(density, phi), style, label=label)
+            ax.plot(np.degrees(phi), density / np.trapezoid(density, phi), style, color=colour, label=label)
         ax.set(title=f"theta_r = {degrees} deg", xlabel="phi_i - phi_r [deg]", ylim=(0, None))
     axes[0].set_ylabel("density per rad")
     axes[0].legend()
-    figure.tight_layout()
-    figure.savefig(path, dpi=90, metadata={"Software": None})
+    figures.save(figure, path)
 
 
 def main() -> int:
@@ -418,10 +406,7 @@ def main() -> int:
         lit=LIT,
         weights=weights(hairs),
         offsets=offsets(hairs),
-        marginals="\n".join(
-            f"| {name} | {h['predicted']['masses']:.4f} | {h['predicted']['marginals']:.4f} |"
-            for name, h in hairs.items()
-        ),
+        marginals=marginals(hairs),
         **unbiased(hairs),
     )
     write_whole(args.numbers.with_suffix(".md"), page.encode())

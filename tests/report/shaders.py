@@ -1,5 +1,6 @@
 """Writes pages/shaders.md from shaders.md: how closely each shader follows C on this machine."""
 
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -19,33 +20,38 @@ from shaders.agreement import (
 from shaders.backends import BACKENDS, Scene
 
 from hairlut.files import write_whole
+from report.markdown import table
 from report.places import PAGES
 
 RANDOM = 100_000
+COLUMNS = ("back end", "model", "inputs", "angle [rad]", "density, relative", "inverted u", "beside a border")
 
 
-def row(backend: str, model: str, tables: Scene, records: np.ndarray) -> str:
+def row(backend: str, model: str, tables: Scene, records: np.ndarray) -> list[object]:
     """One line of the table; says so where this machine lacks the back end."""
     try:
         got = BACKENDS[backend](tables, records)
     except pytest.skip.Exception as reason:
-        return f"| {backend} | {model} | not run: {reason} | | | | |"
+        return [backend, model, f"not run: {reason}", "", "", "", ""]
     r = agreement(reference(model), records, got)
-    figures = f"{r.angle:.1e} | {r.density:.1e} | {r.number:.1e} | {r.bordering}"
-    return f"| {backend} | {model} | {r.records:,} | {figures} |"
+    figures = f"{r.angle:.1e}", f"{r.density:.1e}", f"{r.number:.1e}", r.bordering
+    return [backend, model, f"{r.records:,}", *figures]
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(prog="report.shaders", description=__doc__)
+    parser.add_argument("--out", type=Path, default=PAGES / "shaders.md", metavar="FILE", help="%(default)s")
+    out = parser.parse_args().out
     rows = []
     for model in MODELS:
         tables = scene(model_tables(model))
         records = np.concatenate([hard_records(tables), random_records(RANDOM)])
         rows += [row(backend, model, tables, records) for backend in BACKENDS]
-    limits = {"angle": ANGLE_TOLERANCE, "density": DENSITY_TOLERANCE, "number": NUMBER_TOLERANCE}
-    page = Path(__file__).with_suffix(".md").read_text().format(rows="\n".join(rows), random=RANDOM, **limits)
-    out = PAGES / "shaders.md"
-    write_whole(out, page.encode())
-    print(out)
+    limits = (f"{limit:.0e}" for limit in (ANGLE_TOLERANCE, DENSITY_TOLERANCE, NUMBER_TOLERANCE))
+    rows.append(["tolerance", "", "", *limits, "0.1 %"])
+    template = Path(__file__).with_suffix(".md").read_text()
+    page = template.format(table=table(COLUMNS, rows), random=RANDOM)
+    print(write_whole(out, page.encode()))
 
 
 if __name__ == "__main__":

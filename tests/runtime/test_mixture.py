@@ -77,7 +77,7 @@ def radiance(theta, phi) -> np.ndarray:
 
 def exact_density(name: str, lobe: str, theta_r: float, phi_r: float, theta, phi) -> np.ndarray:
     """The lobe that the tables stand for, per rad^2."""
-    model = lobes.find_model(name)
+    model = lobes.MODELS[name]
     if lobe == "multiple":
         return analytic.density(model.multiple_theta, theta_r, theta) / (2 * np.pi)
     relative = (phi + phi_r if model.direct_phi.azimuth == "sum" else phi - phi_r) % (2 * np.pi)
@@ -108,7 +108,7 @@ def reference(name: str, lobe: str, theta_r: float, phi_r: float) -> float:
         return (mid[:, None] + half[:, None] * nodes).ravel(), (half[:, None] * weights).ravel()
 
     theta, w_theta = panels(np.linspace(-np.pi / 2, np.pi / 2, 41))
-    start = -phi_r if lobes.find_model(name).direct_phi.azimuth == "sum" else phi_r
+    start = -phi_r if lobes.MODELS[name].direct_phi.azimuth == "sum" else phi_r
     phi, w_phi = panels(np.linspace(start, start + 2 * np.pi, 41))
     values = scattering(name, lobe, theta_r, phi_r, theta[:, None], phi) * radiance(theta[:, None], phi)
     return float((w_theta * np.cos(theta)) @ values @ w_phi)
@@ -180,7 +180,7 @@ def test_a_wrong_density_is_rejected(model, wrong):
 
 def coarse(name: str) -> Model:
     """Tables of 8x5 texels, far from the lobes between their knots."""
-    exact, width, e = lobes.find_model(name), 8, 2.0**-10
+    exact, width, e = lobes.MODELS[name], 8, 2.0**-10
     rows, columns = np.linspace(-np.pi / 2, np.pi / 2, 5), np.arange(width)
     m = Warp("octaves", e).unfold(np.minimum(columns, width - 1 - columns), width)
     tables = []

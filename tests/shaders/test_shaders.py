@@ -20,7 +20,7 @@ from shaders.agreement import (
 from shaders.backends import BACKENDS, Scene
 
 from hairlut.cell import Cell
-from hairlut.lobes import find_model
+from hairlut.lobes import FITTED
 from hairlut.table import bake_table
 from hairlut.warp import Warp
 
@@ -56,7 +56,7 @@ SHAPES = {  # the smallest table, a wide one, and the baseline without a warp or
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_agrees_with_c_on_other_tables(backend: str, shape: str):
     width, height, warp, cell = SHAPES[shape]
-    lobes = find_model("fitted").lobes
+    lobes = FITTED.lobes
     tables = [bake_table(lobe, width, height, Warp.parse(warp), Cell.parse(cell)) for lobe in lobes]
     records = np.concatenate([hard_records(scene(tables))[::7], random_records(5000)])
     result = agreement(Reference(tables), records, BACKENDS[backend](scene(tables), records))

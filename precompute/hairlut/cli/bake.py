@@ -18,6 +18,7 @@ from ..lobes import MODELS, Lobe, Model
 from ..measure import measure
 from ..table import bake_table
 from ..warp import Warp
+from . import CHECK_FAILED, OK
 
 EXAMPLES = """examples:
   hairlut bake                                      both models into luts/, as small as V <= 1e-4 allows
@@ -107,13 +108,13 @@ def run(args: argparse.Namespace) -> int:
     models = {name: modelfile.find(name) for name in names}
     choices = bake_all([lobe for model in models.values() for lobe in model.lobes], args)
     if choices is None:
-        return 1
+        return CHECK_FAILED
     for choice in choices:  # only when all of them have come out
         write(args.out, choice)
     for name, model in models.items():
         if name in sources:
             record(args, sources[name], model)
-    return 0
+    return OK
 
 
 def is_current(source: Path, args: argparse.Namespace) -> bool:
@@ -161,10 +162,10 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
         if outcome.status == "failed":
             print(f"  failed: {outcome.source}")
     if counts["failed"]:
-        return 1
+        return CHECK_FAILED
     if family:
         print(batch_bake.copy_family(family, args.out))
-    return 0
+    return OK
 
 
 def passed_on(args: argparse.Namespace) -> list[str]:

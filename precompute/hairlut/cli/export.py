@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..export import TARGETS, export
+from . import OK
 
 EXAMPLES = """examples:
   hairlut export luts/printed luts/fitted --to c --out build/builtin_tables.c
@@ -32,4 +33,4 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
 
 def run(args: argparse.Namespace) -> int:
     print(export(args.path, args.to, args.out))
-    return 0
+    return OK

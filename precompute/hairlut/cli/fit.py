@@ -10,6 +10,7 @@ from ..fit.distribution import CELLS, ROWS
 from ..fit.family import LOBES as FAMILY_LOBES
 from ..fit.family import SHAPES
 from ..fit.read import Draws, Grid, read
+from . import OK
 
 Report = Callable[[str, float], None]
 
@@ -87,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
         said, paths = (_model if data.offset is None else _family)(data, args, report)
     print(said)
     print("\n" + "\n".join(map(str, paths)))
-    return 0
+    return OK
 
 
 def _model(data: Grid | Draws, args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:

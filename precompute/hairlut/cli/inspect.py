@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import exr
 from ..table import Table
+from . import OK
 
 EXAMPLES = """examples:
   hairlut inspect luts/fitted/direct_theta.exr
@@ -32,9 +33,9 @@ def run(args: argparse.Namespace) -> int:
     reports = [describe(path, *exr.read(path)) for path in args.file]
     if args.json:
         print(json.dumps(reports, indent=1))
-        return 0
+        return OK
     print("\n\n".join(map(_text, reports)))
-    return 0
+    return OK
 
 
 def describe(path: Path, table: Table, errors: dict[str, float]) -> dict:

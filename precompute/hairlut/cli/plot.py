@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from . import OK
+
 EXAMPLES = """examples:
   hairlut plot luts/fitted/direct_theta.exr
   hairlut plot luts --out pictures"""
@@ -36,4 +38,4 @@ def run(args: argparse.Namespace) -> int:
     ]
     for file in files:
         print(plot.plot_file(file, lobe_of(file, model), args.out))
-    return 0
+    return OK

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ..verify import Report, verify
+from . import CHECK_FAILED, OK
 
 EXAMPLES = """examples:
   hairlut verify luts
@@ -36,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps([_plain(report) for report in reports], indent=1))
     else:
         print("\n".join(_text(report) for report in reports))
-    return 0 if all(report.ok for report in reports) else 1
+    return OK if all(report.ok for report in reports) else CHECK_FAILED
 
 
 def _plain(report: Report) -> dict:

@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from . import OK
+
 EXAMPLES = """examples:
   hairlut view --open                      write explorer.html and show it in a browser
   hairlut view build/mine --out mine.html  a model of your own"""
@@ -40,4 +42,4 @@ def run(args: argparse.Namespace) -> int:
         import webbrowser
 
         webbrowser.open(out.resolve().as_uri())
-    return 0
+    return OK

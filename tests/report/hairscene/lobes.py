@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from report.hairscene.luminance import luminance
+from report.hairscene.nearfield import direction
 from report.hairscene.samplers import Parameters
 from report.hairscene.scene import light_hair
-from report.hairscene.statistics import LUMINANCE
 
 Array = NDArray[np.float64]
 
@@ -68,22 +69,18 @@ class Sphere:
     def tabulate(self, mi: Any, function: Callable[[Any], float]) -> Array:
         """function(wo) at every midpoint (rows, columns)."""
         phi = (self.phi + self.phi_zero).tolist()
-        return np.array([[function(_direction(mi, t, p)) for p in phi] for t in self.theta.tolist()])
-
-
-def _direction(mi: Any, theta: float, phi: float) -> Any:
-    return mi.Vector3f(math.cos(theta) * math.sin(phi), math.sin(theta), math.cos(theta) * math.cos(phi))
+        return np.array([[function(direction(mi, t, p)) for p in phi] for t in self.theta.tolist()])
 
 
 def _interaction(mi: Any, theta_r: float, h: float) -> Any:
     si = mi.SurfaceInteraction3f()
-    si.wi = _direction(mi, math.radians(theta_r), math.asin(h))
+    si.wi = direction(mi, math.radians(theta_r), math.asin(h))
     return si
 
 
 def _values(mi: Any, bsdf: Any, si: Any, sphere: Sphere) -> Array:
     context = mi.BSDFContext()
-    return sphere.tabulate(mi, lambda wo: float(np.dot(LUMINANCE, list(bsdf.eval(context, si, wo)))))
+    return sphere.tabulate(mi, lambda wo: float(luminance(bsdf.eval(context, si, wo))))
 
 
 def _density(mi: Any, bsdf: Any, si: Any, sphere: Sphere) -> Array:

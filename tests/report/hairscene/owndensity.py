@@ -17,6 +17,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ive
 
+from report.hairscene.luminance import luminance
+
 ETA = 1.55 / 1.000277  # amber in air
 TILT = np.radians(2.0)
 MELANIN = np.array([[0.419, 0.697, 1.37], [0.187, 0.4, 1.05]])  # absorption of eumelanin, pheomelanin
@@ -26,7 +28,6 @@ DEFAULTS = {
     "longitudinal_roughness": 0.3,
     "azimuthal_roughness": 0.3,
 }
-LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
 
 
 def is_atom(wo: np.ndarray) -> np.ndarray:
@@ -67,8 +68,8 @@ def _shares(hair: dict, theta_r: float, gamma: np.ndarray) -> np.ndarray:
     through = (1 - mirror) ** 2 * passed
     again = through * passed * mirror
     rest = again * passed * mirror / (1 - passed * mirror)
-    luminance = np.stack([np.broadcast_to(mirror, passed.shape), through, again, rest]) @ LUMINANCE
-    return luminance / luminance.sum(axis=0)
+    share = luminance(np.stack([np.broadcast_to(mirror, passed.shape), through, again, rest]))
+    return share / share.sum(axis=0)
 
 
 def _fresnel(cosine: np.ndarray) -> np.ndarray:

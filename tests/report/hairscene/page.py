@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from report.hairscene import figures, lobes
+from report.hairscene import lobes, pictures
 from report.hairscene.batches import BATCH, SMALL, Images, samples_per_pixel
 from report.hairscene.occlusion import share_that_meets_hair
 from report.hairscene.perception import delta_e_2000, delta_e_itp
 from report.hairscene.samplers import LABELS, REFERENCE, SAMPLERS, SETTINGS
 from report.hairscene.statistics import COUNTS, at_count, bias, variance, variance_per_sample
+from report.markdown import table
 
 GOAL = 2.8  # what the source text measured, at best
 PICTURED = "path"
@@ -79,9 +80,9 @@ def write_page(
 def _draw(mi: Any, results: Results, folder: Path) -> None:
     reference = results.reference(PICTURED).mean(axis=0)
     first = {n: {s: results.at(PICTURED, s, n)[0] for s in SAMPLERS} for n in SHOWN_COUNTS}
-    figures.pictures(first, reference, folder / "render_images.png")
-    figures.differences(first[MAP_COUNT], reference, MAP_COUNT, folder / "render_difference.png")
-    figures.variances({name: _curves(results, name) for name in SETTINGS}, folder / "render_variance.svg")
+    pictures.images(first, reference, folder / "render_images.png")
+    pictures.differences(first[MAP_COUNT], reference, MAP_COUNT, folder / "render_difference.png")
+    pictures.variances({name: _curves(results, name) for name in SETTINGS}, folder / "render_variance.svg")
     across = tuple(np.linspace(-0.9, 0.9, 7))
     panels = {
         f"averaged across the fibre, theta_r = {t} degrees": lobes.marginals(mi, t, across) for t in (0, 45)
@@ -89,7 +90,7 @@ def _draw(mi: Any, results: Results, folder: Path) -> None:
     panels |= {
         f"hit at h = {h:g}, theta_r = 0 degrees": lobes.marginals(mi, 0, (h,)) for h in (0.0, 0.5, 0.9)
     }
-    figures.lobes(panels, folder / "render_lobes.svg")
+    pictures.lobes(panels, folder / "render_lobes.svg")
 
 
 def _curves(results: Results, setting: str) -> dict[str, list[tuple[int, float, float]]]:
@@ -101,11 +102,6 @@ def _curves(results: Results, setting: str) -> dict[str, list[tuple[int, float, 
         ]
         for sampler in SAMPLERS
     }
-
-
-def _table(header: list[str], rows: list[list[str]]) -> str:
-    lines = ["| " + " | ".join(row) + " |" for row in (header, ["---"] * len(header), *rows)]
-    return "\n".join(lines)
 
 
 def _ratio(results: Results, setting: str, sampler: str) -> tuple[float, float, float]:
@@ -190,7 +186,7 @@ def _variance(results: Results) -> str:
         "time of a sample",
         "at equal time",
     ]
-    return _table(header, rows)
+    return table(header, rows)
 
 
 def _bias(results: Results) -> str:
@@ -199,7 +195,7 @@ def _bias(results: Results) -> str:
         b = bias(results.batches(setting, sampler), results.reference(setting))
         numbers = [f"{100 * b.relative:+.2f} %", f"{100 * b.error:.2f} %", f"{b.sigmas:+.1f}"]
         rows.append([setting, LABELS[sampler], *numbers])
-    return _table(["setting", "sampler", "difference", "standard error", "in standard errors"], rows)
+    return table(["setting", "sampler", "difference", "standard error", "in standard errors"], rows)
 
 
 def _plane(mi: Any) -> str:
@@ -214,7 +210,7 @@ def _perception(results: Results) -> str:
         images = [results.at(PICTURED, sampler, count)[0] for sampler in SAMPLERS]
         pairs = [(delta_e_2000(i, reference).mean(), delta_e_itp(i, reference).mean()) for i in images]
         rows.append([str(count), *(f"{e:.1f} / {itp:.1f}" for e, itp in pairs)])
-    return _table(["spp", *LABELS.values()], rows)
+    return table(["spp", *LABELS.values()], rows)
 
 
 def _hairs(mi: Any) -> str:
@@ -223,7 +219,7 @@ def _hairs(mi: Any) -> str:
     for title, hair in lobes.HAIRS.items():
         v = lobes.relative_variances(mi, hair, DIRECT_WEIGHTS)
         rows.append([title, *(f"{v[name]:.2f}" for name in names), f"{v['uniform'] / v['fitted 0.5']:.1f}"])
-    return _table(["hair", *names, "gain"], rows)
+    return table(["hair", *names, "gain"], rows)
 
 
 def _sides(mi: Any) -> str:

@@ -5,16 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from report.hairscene.batches import BATCH, SMALL, Images
+from report.hairscene.luminance import luminance
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear RGB with the primaries of Rec. 709
 COUNTS = (*SMALL, *(BATCH * 2**k for k in range(5)))  # 1 to 256 samples per pixel
-
-
-def luminance(images: Images) -> NDArray[np.float64]:
-    return images.astype(np.float64) @ LUMINANCE
 
 
 def at_count(batches: Images, small: dict[int, Images], count: int) -> Images:

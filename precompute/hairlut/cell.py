@@ -1,32 +1,50 @@
-"""The curve inside a cell of a table (interpolant.py has its equations)."""
+# SPDX-License-Identifier: BSD-3-Clause
+"""The cell of a table: a monotone rational quadratic in u (Gregory and Delbourgo 1982), in double precision.
 
-from dataclasses import dataclass
+A cell lies between two knots u0 < u1 = u0 + h, at which the angle is x0 < x1 and its slope dx/du d0, d1 > 0.
+With w = x1 - x0, the secant s = w / h, the fraction f = (u - u0) / h and p = f (1 - f),
 
-from . import parameter
-from .errors import HairlutError
+    G     = s (f^2 + (1-f)^2) + (d0 + d1) p
+    x     = x0 + w (s f^2 + d0 p) / G
+    dx/du = s^2 (d1 f^2 + 2 s p + d0 (1-f)^2) / G^2,            density = 1 / (dx/du).
 
-MAX_LIMIT = 0.95
+Every term is positive, so nothing cancels and x rises for any positive d0, d1. The angle and the density are
+continuous from one cell to the next. All arguments broadcast against each other.
+"""
+
+import numpy as np
+
+from .lobes import Array
 
 
-@dataclass(frozen=True)
-class Cell:
-    """name: "parabola" or "linear"; limit: bound of the curvature, relative to the width; 0 for linear."""
+def angle(x0: Array, x1: Array, d0: Array, d1: Array, h: Array, f: Array) -> Array:
+    """x at the fraction f in [0, 1] of a cell."""
+    w, p = x1 - x0, f * (1 - f)
+    s = w / h
+    return x0 + w * (s * f * f + d0 * p) / _denominator(s, d0, d1, f, 1 - f)
 
-    name: str
-    limit: float = 0.0
 
-    def __post_init__(self) -> None:
-        if self.name == "linear" and self.limit == 0.0:
-            return
-        if self.name != "parabola":
-            raise HairlutError(f"cell {self} is not known: expected 'parabola limit=NUMBER' or 'linear'")
-        if not 0.0 < self.limit <= MAX_LIMIT:
-            raise HairlutError(f"cell {self}: expected a limit above 0, up to {MAX_LIMIT}")
+def slope(x0: Array, x1: Array, d0: Array, d1: Array, h: Array, f: Array) -> Array:
+    """dx/du at the fraction f in [0, 1] of a cell."""
+    s, g = (x1 - x0) / h, 1 - f
+    numerator = d1 * f * f + 2 * s * f * g + d0 * g * g
+    return numerator * (s / _denominator(s, d0, d1, f, g)) ** 2
 
-    def __str__(self) -> str:
-        return f"{self.name} limit={self.limit!r}" if self.name == "parabola" else self.name
 
-    @classmethod
-    def parse(cls, text: str) -> "Cell":
-        """From "linear" or "parabola limit=NUMBER", as in a file's header."""
-        return cls(*parameter.parse(text, "cell", "limit", "'parabola limit=NUMBER' or 'linear'"))
+def locate(x0: Array, x1: Array, d0: Array, d1: Array, h: Array, x: Array) -> tuple[Array, Array]:
+    """(fraction f, dx/du) at which x lies in a cell; x is clamped to it. The root of a quadratic, without
+    cancellation: f = a / (a + b)."""
+    w = x1 - x0
+    below, above = np.clip(x - x0, 0.0, w), np.clip(x1 - x, 0.0, w)
+    s = w / h
+    bend = d0 * above - d1 * below
+    root = np.sqrt(bend * bend + 4 * s * s * below * above)
+    a = np.where(bend >= 0, 2 * s * below, root - bend)
+    b = np.where(bend >= 0, root + bend, 2 * s * above)
+    f, g = a / (a + b), b / (a + b)
+    return f, root / (h * _denominator(s, d0, d1, f, g))
+
+
+def _denominator(s: Array, d0: Array, d1: Array, f: Array, g: Array) -> Array:
+    """G, with g = 1 - f."""
+    return s * (f * f + g * g) + (d0 + d1) * f * g

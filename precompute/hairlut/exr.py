@@ -1,214 +1,220 @@
-"""Tables as OpenEXR files (luts/FORMAT.md): written whole or not at all, and read with suspicion."""
+"""Tables and whole models as OpenEXR files (luts/FORMAT.md)."""
 
+from __future__ import annotations
+
+import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 
-from . import __version__
-from .cell import Cell
+from . import mixturefile, slopes
 from .errors import HairlutError
-from .files import replace_whole
-from .lobes import DIFFERENCE, NO_AZIMUTH, SUM
+from .exrfile import (
+    PREFIX,
+    REBAKE,
+    UNIT,
+    Attributes,
+    Header,
+    common_attributes,
+    numbers_text,
+    read_image,
+    write_image,
+)
+from .lobes import (
+    AZIMUTHS,
+    DIRECT,
+    DIRECT_PHI,
+    DIRECT_THETA,
+    MULTIPLE,
+    MULTIPLE_THETA,
+    NO_AZIMUTH,
+    Array,
+    space,
+)
+from .mixture import constant
+from .model import BakedLobe, BakedModel
 from .table import Table, check_size
 from .warp import Warp
 
-FORMAT = 1
-UNIT = "rad"
-PREFIX = "hairlut."
-ERROR_PREFIX = "hairlut.error."
-REBAKE = "bake it again with 'hairlut bake'"
+CELL = "rational quadratic"
+OLD_CELL = r"linear|parabola limit=(\S+)"  # of format 1
+OLD_LOBES = {DIRECT: (DIRECT_THETA, DIRECT_PHI), MULTIPLE: (MULTIPLE_THETA, None)}
+CHANNELS = {1: ("Y",), 2: ("Y", "dxdu")}
 KNOT_TOLERANCE = 1e-15
+NARROWEST = 1e-12  # rad
+MAX_THETA_R = 2 * np.pi
+
+
+def write_model(directory: Path, model: BakedModel) -> list[Path]:
+    """Writes directory/<table>.exr for each table, and last mixture.exr; their paths.
+
+    Each file appears whole or not at all; until mixture.exr is there, which names the tables by their
+    digests, a reader refuses a directory of old and new files.
+    """
+    directory = Path(directory)
+    paths = []
+    for table in model.tables:
+        paths.append(directory / f"{table.name}.exr")
+        write(paths[-1], table, model.errors.get(table.name))
+    paths.append(directory / mixturefile.FILE)
+    mixturefile.write(paths[-1], model)
+    return paths
+
+
+def read_model(directory: Path) -> BakedModel:
+    """The model of a directory; HairlutError if a file is unfit, missing, or of another bake."""
+    directory = Path(directory)
+    if not directory.is_dir():
+        raise HairlutError(f"{directory}: expected a directory with mixture.exr, or with tables of format 1")
+    file = directory / mixturefile.FILE
+    if not file.is_file() and not (directory / f"{DIRECT_THETA}.exr").is_file():
+        raise HairlutError(f"{file}: no such file: {REBAKE}")
+    mixed = mixturefile.read(file) if file.is_file() else None
+    names = {name: mixed.tables[name] for name in mixed.mixture.lobes} if mixed else OLD_LOBES
+    read_before: dict[str, tuple[Table, dict[str, float]]] = {}
+
+    def table(name: str | None) -> Table | None:
+        if name and name not in read_before:
+            read_before[name] = read(directory / f"{name}.exr")
+        return read_before[name][0] if name else None
+
+    lobes = tuple(BakedLobe(lobe, table(theta), table(phi)) for lobe, (theta, phi) in names.items())
+    errors = {name: found for name, (_, found) in read_before.items()}
+    model = mixed.model if mixed else lobes[0].theta.model
+    for each, _ in read_before.values():
+        _check_member(directory / f"{each.name}.exr", each, model, mixed)
+    mixture = mixed.mixture if mixed else constant(tuple(OLD_LOBES))
+    return BakedModel(model, lobes, mixture, errors | ({"mixture": mixed.errors} if mixed else {}))
+
+
+def _check_member(path: Path, table: Table, model: str, mixed: mixturefile.MixtureFile | None) -> None:
+    """HairlutError if a table does not belong to the directory that it is in."""
+    if table.model != model:
+        raise HairlutError(
+            f"{path}: attribute {PREFIX}model is {table.model!r}, expected {model!r} as in the other files: "
+            "bake them again together"
+        )
+    if mixed and table.digest != mixed.digests[table.name]:
+        raise HairlutError(
+            f"{path}: the texels have the digest {table.digest!r}, but mixture.exr names "
+            f"{mixed.digests[table.name]!r}: the files are of different bakes; bake them again together"
+        )
 
 
 def write(path: Path, table: Table, errors: Mapping[str, float] | None = None) -> None:
-    """Writes table to path, named <table.name>.exr; a file that is there already is replaced in one step.
-
-    errors: measured errors by name ("relative_variance", ...), written as hairlut.error.<name>.
-    """
+    """Writes a table to path, named <table.name>.exr."""
     path = Path(path)
     if path.name != f"{table.name}.exr":
         raise HairlutError(f"{path}: table {table.name} must be named {table.name}.exr")
-    header = {
-        "compression": OpenEXR.ZIP_COMPRESSION,
-        "type": OpenEXR.scanlineimage,
-        **attributes(table),
-        **{ERROR_PREFIX + name: f"{value:.3e}" for name, value in (errors or {}).items()},
-    }
-    texels = np.ascontiguousarray(table.texels, np.float32)
-
-    def write_image(temporary: Path) -> None:
-        with OpenEXR.File(header, {"Y": texels}) as file:
-            file.write(str(temporary))
-
-    replace_whole(path, write_image)
+    write_image(path, attributes(table), {"Y": table.texels, "dxdu": table.slopes}, errors or {})
 
 
-def attributes(table: Table) -> dict[str, str | int]:
-    """The header of a table without its measured errors. Numbers are text: a float attribute has 32 bits."""
+def attributes(table: Table) -> Attributes:
+    """The header of a table without its digest and measured errors."""
     return {
-        "colorInteropID": "data",
-        "hairlut.format": FORMAT,
-        "hairlut.generator": f"hairlut {__version__}",
-        "hairlut.model": table.model,
-        "hairlut.table": table.name,
+        **common_attributes(table.model, table.name),
         "hairlut.angle": table.angle,
         "hairlut.azimuth": table.azimuth,
-        "hairlut.unit": UNIT,
-        "hairlut.theta_r_range": _numbers(table.theta_r_range),
-        "hairlut.domain": _numbers(table.domain),
+        "hairlut.theta_r_range": numbers_text(table.theta_r_range),
+        "hairlut.domain": numbers_text(table.domain),
         "hairlut.warp": str(table.warp),
-        "hairlut.cell": str(table.cell),
-        "hairlut.knots": _numbers(table.warp.u(table.width)),
+        "hairlut.cell": CELL,
+        "hairlut.knots": numbers_text(table.warp.u(table.width)),
         "hairlut.parameters": table.parameters,
-        "hairlut.log_mass": _numbers(np.round(table.log_mass, 12) + 0.0),  # what every machine agrees on
+        "hairlut.log_mass": numbers_text(np.round(table.log_mass, 12) + 0.0),  # as on every machine
     }
-
-
-def _numbers(values) -> str:
-    return " ".join(repr(float(x)) for x in values)
 
 
 def read(path: Path) -> tuple[Table, dict[str, float]]:
     """(table, measured errors) of a file. If it is unfit, HairlutError names file, attribute and remedy."""
     path = Path(path)
-    header, channels = _open(path)
-    reader = _Header(path, header)
-    _refuse_other_formats(reader)
-    texels = _texels(path, header, channels)
-    table = Table(
-        model=reader.text("model"),
-        name=reader.one_of("table", (path.stem,), f"rename the file to the table it holds, or {REBAKE}"),
-        angle=reader.one_of("angle", ("theta_i", "phi")),
-        azimuth=reader.one_of("azimuth", (SUM, DIFFERENCE, NO_AZIMUTH)),
-        domain=reader.interval("domain"),
-        theta_r_range=reader.interval("theta_r_range"),
-        parameters=reader.text("parameters"),
-        warp=reader.parsed("warp", Warp.parse),
-        cell=reader.parsed("cell", Cell.parse),
-        texels=texels,
-        log_mass=reader.numbers("log_mass", len(texels)),
-    )
-    reader.one_of("unit", (UNIT,))
-    _check_knots(reader, table)
-    _check_rows(path, table)
-    return table, reader.errors()
-
-
-def _open(path: Path) -> tuple[dict, dict]:
-    if path.is_dir():
-        raise HairlutError(f"{path}: is a directory: name a file in it")
-    if not path.is_file():
-        raise HairlutError(f"{path}: no such file: {REBAKE}")
-    try:
-        with OpenEXR.File(str(path), separate_channels=True) as file:
-            channels = {name: np.array(channel.pixels) for name, channel in file.channels().items()}
-            return dict(file.header()), channels
-    except Exception as error:  # the binding raises several unrelated types
-        raise HairlutError(
-            f"{path}: not a complete OpenEXR image ({_first_line(error)}): {REBAKE}"
-        ) from error
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]
-
-
-class _Header:
-    """Attributes of one file, each checked as it is asked for."""
-
-    def __init__(self, path: Path, header: dict) -> None:
-        self.path, self.header = path, header
-
-    def fail(self, name: str, found: str, remedy: str = REBAKE) -> HairlutError:
-        return HairlutError(f"{self.path}: attribute {PREFIX}{name} {found}: {remedy}")
-
-    def text(self, name: str) -> str:
-        value = self.header.get(PREFIX + name)
-        if value is None:
-            raise self.fail(name, "is missing")
-        if not isinstance(value, str):
-            raise self.fail(name, f"is {value!r}, expected text")
-        return value
-
-    def one_of(self, name: str, expected: tuple[str, ...], remedy: str = REBAKE) -> str:
-        value = self.text(name)
-        if value not in expected:
-            raise self.fail(name, f"is {value!r}, expected {' or '.join(map(repr, expected))}", remedy)
-        return value
-
-    def numbers(self, name: str, count: int) -> np.ndarray:
-        text = self.text(name)
-        try:
-            values = np.array([float(word) for word in text.split()])
-        except ValueError:
-            values = np.array([np.nan])
-        if len(values) != count or not np.isfinite(values).all():
-            raise self.fail(name, f"is {text[:60]!r}, expected {count} finite numbers")
-        return values
-
-    def interval(self, name: str) -> tuple[float, float]:
-        low, high = self.numbers(name, 2)
-        if not low < high:
-            raise self.fail(name, f"is {low!r} {high!r}, expected two increasing numbers")
-        return float(low), float(high)
-
-    def parsed(self, name: str, parse):
-        text = self.text(name)
-        try:
-            return parse(text)
-        except HairlutError as error:
-            raise self.fail(name, f"is {text!r} ({error})") from error
-
-    def errors(self) -> dict[str, float]:
-        """The measured errors, as many as the file has."""
-        names = sorted(name for name in self.header if name.startswith(ERROR_PREFIX))
-        return {name[len(ERROR_PREFIX) :]: float(self.numbers(name[len(PREFIX) :], 1)[0]) for name in names}
-
-
-def _refuse_other_formats(reader: _Header) -> None:
-    version = reader.header.get(PREFIX + "format")
-    if version is None:
-        raise reader.fail("format", "is missing: the file is no hairlut table")
-    if not isinstance(version, int) or version < 1:
-        raise reader.fail("format", f"is {version!r}, expected {FORMAT}")
-    if version > FORMAT:
-        raise reader.fail(
-            "format", f"is {version}, expected {FORMAT} or less", "use a newer hairlut to read this file"
-        )
-
-
-def _texels(path: Path, header: dict, channels: dict) -> np.ndarray:
-    if set(channels) != {"Y"}:
-        raise HairlutError(f"{path}: channels are {', '.join(sorted(channels))}, expected Y alone: {REBAKE}")
-    texels = channels["Y"]
-    if texels.dtype != np.float32:
-        raise HairlutError(f"{path}: channel Y is {texels.dtype}, expected 32-bit float: {REBAKE}")
+    header, channels = read_image(path, lambda header: CHANNELS[header.format])
+    texels = channels[0]
     height, width = texels.shape
-    for name in ("dataWindow", "displayWindow"):
-        corners = [tuple(int(x) for x in corner) for corner in header[name]]
-        if corners != [(0, 0), (width - 1, height - 1)]:
-            raise HairlutError(
-                f"{path}: {name} is {corners}, expected it to start at 0 0 and span the image: {REBAKE}"
-            )
     try:
         check_size(width, height)
     except HairlutError as error:
         raise HairlutError(f"{path}: {error}: {REBAKE}") from error
-    return texels
+    name = header.one_of("table", (path.stem,), f"rename the file to the table it holds, or {REBAKE}")
+    angle, domain = _space(header, name)
+    header.one_of("unit", (UNIT,))
+    warp = header.parsed("warp", Warp.parse)
+    _check_cell(header)
+    _check_knots(header, warp, width)
+    table = Table(
+        model=header.text("model"),
+        name=name,
+        angle=header.one_of("angle", (angle,)),
+        azimuth=header.one_of("azimuth", AZIMUTHS if angle == "phi" else (NO_AZIMUTH,)),
+        domain=_within(header, "domain", *domain),
+        theta_r_range=_within(header, "theta_r_range", -MAX_THETA_R, MAX_THETA_R),
+        parameters=header.text("parameters", ""),
+        warp=warp,
+        texels=texels,
+        slopes=np.ones_like(texels),
+        log_mass=_log_mass(header, height),
+    )
+    _check_angles(path, table)
+    if header.format == 1:
+        given = slopes.derived(texels, warp.widths(width)).astype(np.float32)
+    else:
+        given = channels[1]
+        header.check_digest(channels)
+        _check_slopes(path, given)
+    return replace(table, slopes=given), header.errors()
 
 
-def _check_knots(reader: _Header, table: Table) -> None:
-    knots = reader.numbers("knots", table.width)
-    expected = table.warp.u(table.width)
+def _space(header: Header, name: str) -> tuple[str, tuple[float, float]]:
+    """(angle, widest domain) that the name of a table allows."""
+    try:
+        allowed = space(name)
+    except HairlutError as error:
+        raise header.failure("table", f"is {name!r} ({error})") from error
+    return allowed["angle"], allowed["domain"]
+
+
+def _within(header: Header, name: str, low: float, high: float) -> tuple[float, float]:
+    """An interval that lies between two numbers, up to the rounding of a float."""
+    found = header.interval(name)
+    if np.float32(found[0]) < np.float32(low) or np.float32(found[1]) > np.float32(high):
+        raise header.failure(name, f"is {found[0]!r} {found[1]!r}, expected to lie in {low!r} {high!r}")
+    return found
+
+
+def _log_mass(header: Header, height: int) -> Array:
+    """Information that a file may lack: NaN then."""
+    return (
+        header.numbers("log_mass", height)
+        if "hairlut.log_mass" in header.attributes
+        else np.full(height, np.nan)
+    )
+
+
+def _check_cell(header: Header) -> None:
+    if header.format > 1:
+        header.one_of("cell", (CELL,))
+        return
+    text = header.text("cell")
+    match = re.fullmatch(OLD_CELL, text)
+    try:
+        known = match and (match[1] is None or 0.0 < float(match[1]) <= 0.95)
+    except ValueError:
+        known = False
+    if not known:
+        raise header.failure("cell", f"is {text!r}, expected 'linear' or 'parabola limit=NUMBER'")
+
+
+def _check_knots(header: Header, warp: Warp, width: int) -> None:
+    knots, expected = header.numbers("knots", width), warp.u(width)
     if (abs(knots - expected) > KNOT_TOLERANCE).any():
         i = int(np.argmax(abs(knots - expected)))
-        found = f"has {knots[i]!r} at column {i}, expected {expected[i]!r} from the warp {table.warp}"
-        raise reader.fail("knots", found)
+        found = f"has {knots[i]!r} at column {i}, expected {expected[i]!r} from the warp {warp}"
+        raise header.failure("knots", found)
 
 
-def _check_rows(path: Path, table: Table) -> None:
+def _check_angles(path: Path, table: Table) -> None:
     texels = table.texels
     wrong = ~np.isfinite(texels)
     if wrong.any():
@@ -216,12 +222,12 @@ def _check_rows(path: Path, table: Table) -> None:
         raise HairlutError(
             f"{path}: row {j}, column {i} is {texels[j, i]}, expected a finite angle: {REBAKE}"
         )
-    wrong = ~(np.diff(texels, axis=1) > 0)
+    wrong = ~(np.diff(texels, axis=1) >= np.float32(NARROWEST))
     if wrong.any():
         j, i = np.argwhere(wrong)[0]
         raise HairlutError(
             f"{path}: row {j}, columns {i} and {i + 1} are {texels[j, i]:.9g} and {texels[j, i + 1]:.9g}, "
-            f"expected strictly increasing angles: {REBAKE}"
+            f"expected angles that increase by {NARROWEST:g} or more: {REBAKE}"
         )
     low, high = np.float32(table.domain)
     wrong = (texels[:, 0] != low) | (texels[:, -1] != high)
@@ -230,4 +236,14 @@ def _check_rows(path: Path, table: Table) -> None:
         raise HairlutError(
             f"{path}: row {j} runs from {texels[j, 0]:.9g} to {texels[j, -1]:.9g}, expected the ends of the "
             f"domain, {low:.9g} and {high:.9g}: {REBAKE}"
+        )
+
+
+def _check_slopes(path: Path, given: Array) -> None:
+    low, high = np.float32(slopes.RANGE)
+    wrong = ~((given >= low) & (given <= high))
+    if wrong.any():
+        j, i = np.argwhere(wrong)[0]
+        raise HairlutError(
+            f"{path}: row {j}, column {i}: dxdu is {given[j, i]:.9g}, expected {low:g} to {high:g}: {REBAKE}"
         )

@@ -1,101 +1,78 @@
 """How a table is read (luts/FORMAT.md): between its rows and columns, and backwards. In double precision.
 
-Each cell of a row is a parabola in u. With X and D the cell's low end and width in x, h its width in u and f
-the fraction of it at which u lies,
-
-    x(f) = X + f (D + C (1 - f)),    dx/df = D + C (1 - 2f),    density = h / (dx/df).
-
-The curvature C comes from the densities at the cell's two knots, and a density at a knot from the mean
-densities of the two cells that meet there, blended linearly in x. C is kept below limit * D, so that the
-slope stays positive. X, D and C of two neighbouring rows are blended linearly in theta_r.
+The angles and slopes of two neighbouring rows are blended linearly in theta_r, and between two blended knots
+lies a cell (cell.py). The blend of two quantile functions is again one, with these values and slopes at the
+knots.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from . import cell
 from .lobes import Array
 from .table import Table
 
 
-def curvatures(x: Array, h: Array, limit: float) -> Array:
-    """(H, W-1) curvature of every cell of the rows x (H, W), h (W-1,) being the cells' widths in u."""
-    d = np.diff(x, axis=1)
-    before, after = d[:, :-1], d[:, 1:]
-    slope = (before + after) / (after * h[:-1] / before + before * h[1:] / after)  # dx/du at the inner knots
-    c = np.empty_like(d)
-    c[:, 1:-1] = h[1:-1] * (slope[:, :-1] - slope[:, 1:]) / 2
-    # the inner end of an end cell has the mean slope of the next cell
-    c[:, 0] = d[:, 0] - h[0] * d[:, 1] / h[1]
-    c[:, -1] = h[-1] * d[:, -2] / h[-2] - d[:, -1]
-    bound = limit * abs(d)  # rows that are counted from their high end fall
-    return np.clip(c, -bound, bound)
-
-
 @dataclass(frozen=True)
 class Cells:
-    """The cells of a table at n viewer inclinations: low end x0, width d, curvature c, each (n, W-1), and
-    their widths h (W-1,) in u."""
+    """The cells of a table at n viewer inclinations: angles x and slopes dx/du of the knots, (n, W), and the
+    cells' widths h (W-1,) in u."""
 
     h: Array
-    x0: Array
-    d: Array
-    c: Array
+    x: Array
+    slopes: Array
 
     def angle(self, f: Array) -> Array:
         """(n, W-1, K) angles at the fractions f (K,) of every cell."""
-        return _angle(self.x0[..., None], self.d[..., None], self.c[..., None], f)
+        return cell.angle(*self._all(), np.asarray(f))
 
     def slope(self, f: Array) -> Array:
-        """(n, W-1, K) dx/df at the fractions f (K,) of every cell; always positive."""
-        return _slope(self.d[..., None], self.c[..., None], np.asarray(f))
+        """(n, W-1, K) dx/du at the fractions f (K,) of every cell; always positive."""
+        return cell.slope(*self._all(), np.asarray(f))
 
     def density(self, f: Array) -> Array:
         """(n, W-1, K) density of the table, per rad, at the fractions f (K,) of every cell."""
-        return self.h[:, None] / self.slope(f)
+        return 1 / self.slope(f)
 
     def angle_at(self, n: Array, i: Array, f: Array) -> Array:
         """Angles at the fractions f of the cells i of the inclinations number n, all broadcasting."""
-        return _angle(self.x0[n, i], self.d[n, i], self.c[n, i], f)
+        return cell.angle(*self._one(n, i), f)
 
     def slope_at(self, n: Array, i: Array, f: Array) -> Array:
-        """dx/df, likewise."""
-        return _slope(self.d[n, i], self.c[n, i], f)
+        """dx/du, likewise."""
+        return cell.slope(*self._one(n, i), f)
+
+    def read_at(self, n: Array, i: Array, f: Array) -> tuple[Array, Array]:
+        """(angles, dx/du), likewise."""
+        ends = self._one(n, i)
+        return cell.angle(*ends, f), cell.slope(*ends, f)
 
     def column(self, x: Array) -> Array:
         """(n, K) columns, with their fractions, at which the angles x (n, K) lie; x is clamped to the
         row's ends."""
-        i = np.maximum((self.x0[:, None, :] <= x[:, :, None]).sum(axis=2) - 1, 0)
-        return i + self.fraction_at(np.arange(len(x))[:, None], i, x)[0]
+        i = np.clip((self.x[:, None, :] <= x[:, :, None]).sum(axis=2) - 1, 0, self.x.shape[1] - 2)
+        return i + self.locate(np.arange(len(x))[:, None], i, x)[0]
 
-    def fraction_at(self, n: Array, i: Array, x: Array) -> tuple[Array, Array]:
-        """(fraction f, slope dx/df) at which the angles x lie in the cells i, likewise."""
-        d, c = self.d[n, i], self.c[n, i]
-        distance = np.clip(x - self.x0[n, i], 0.0, d)
-        slope = np.sqrt(np.maximum((d + c) ** 2 - 4 * c * distance, 0.0))
-        return np.clip(2 * distance / (d + c + slope), 0.0, 1.0), slope
+    def locate(self, n: Array, i: Array, x: Array) -> tuple[Array, Array]:
+        """(fraction f, dx/du) at which the angles x lie in the cells i, likewise."""
+        return cell.locate(*self._one(n, i), x)
 
+    def _all(self) -> tuple[Array, ...]:
+        knots = self.x[:, :-1], self.x[:, 1:], self.slopes[:, :-1], self.slopes[:, 1:]
+        return *(part[..., None] for part in knots), self.h[:, None]
 
-def _angle(x0: Array, d: Array, c: Array, f: Array) -> Array:
-    return x0 + f * (d + c * (1 - f))
-
-
-def _slope(d: Array, c: Array, f: Array) -> Array:
-    return d + c * (1 - 2 * f)
+    def _one(self, n: Array, i: Array) -> tuple[Array, ...]:
+        return self.x[n, i], self.x[n, i + 1], self.slopes[n, i], self.slopes[n, i + 1], self.h[i]
 
 
 def cells(table: Table, theta_r: Array) -> Cells:
     """The blended cells at theta_r (n,); theta_r outside the table's range is clamped, NaN to its low end."""
-    low, high = table.theta_r_range
-    last = table.height - 1
-    r = np.clip(np.nan_to_num(np.atleast_1d(theta_r).astype(float), nan=low), low, high)
-    r = np.clip((r - low) / (high - low) * last, 0, last)
-    j = np.minimum(r.astype(int), last - 1)
-    t = (r - j)[:, None]
-    x = table.texels.astype(float)
-    h = table.warp.widths(table.width)
-    parts = x[:, :-1], np.diff(x, axis=1), curvatures(x, h, table.cell.limit)
-    return Cells(h, *((1 - t) * part[j] + t * part[j + 1] for part in parts))
+    j, t = _rows(table, np.atleast_1d(theta_r))
+    blended = (_blend(rows[j], rows[j + 1], t[:, None]) for rows in (table.texels, table.slopes))
+    return Cells(table.warp.widths(table.width), *blended)
 
 
 def sample(table: Table, theta_r: Array, u: Array) -> tuple[Array, Array]:
@@ -108,26 +85,51 @@ def sample(table: Table, theta_r: Array, u: Array) -> tuple[Array, Array]:
 
 def sample_tail(table: Table, theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
     """As sample, for u = m, or u = 1 - m where upper; all (n,). Both tails keep the precision of m."""
-    read = cells(table, theta_r)
     i, f = table.warp.place(m, upper, table.width)
-    n = np.arange(len(i))
-    return read.angle_at(n, i, f), read.h[i] / read.slope_at(n, i, f)
+    knots = _knots(table, *_rows(table, theta_r), i)
+    return cell.angle(*knots, f), 1 / cell.slope(*knots, f)
 
 
-def locate(table: Table, theta_r: Array, x: Array) -> tuple[Array, Array, Array, Array]:
-    """(cell i, its width h in u, fraction f, slope dx/df), each (n,), at which x (n,) lies; x is clamped to
-    the row's ends."""
-    read = cells(table, theta_r)
-    i = np.clip((read.x0 <= np.asarray(x)[:, None]).sum(axis=1) - 1, 0, table.width - 2)
-    return i, read.h[i], *read.fraction_at(np.arange(len(i)), i, x)
+def locate(table: Table, theta_r: Array, x: Array) -> tuple[Array, Array, Array]:
+    """(cell i, fraction f, slope dx/du), each (n,), at which x (n,) lies; x is clamped to the row's ends."""
+    j, t = _rows(table, theta_r)
+    i, above = np.zeros(len(j), int), np.full(len(j), table.width - 1)
+    for _ in range((table.width - 2).bit_length()):
+        middle = (i + above) // 2
+        beyond = _blend(table.texels[j, middle], table.texels[j + 1, middle], t) > x
+        i, above = np.where(beyond, i, middle), np.where(beyond, middle, above)
+    i = np.minimum(i, table.width - 2)
+    return i, *cell.locate(*_knots(table, j, t, i), x)
+
+
+def _rows(table: Table, theta_r: Array) -> tuple[Array, Array]:
+    """(row j, weight t of row j + 1), each (n,), at theta_r (n,)."""
+    low, high = table.theta_r_range
+    last = table.height - 1
+    r = np.clip(np.nan_to_num(np.asarray(theta_r, float), nan=low), low, high)
+    r = np.clip((r - low) / (high - low) * last, 0, last)
+    j = np.minimum(r.astype(int), last - 1)
+    return j, r - j
+
+
+def _blend(a: Array, b: Array, t: Array) -> Array:
+    return (1 - t) * a + t * b
+
+
+def _knots(table: Table, j: Array, t: Array, i: Array) -> tuple[Array, ...]:
+    """Angles, slopes and width in u of the blended cells i, as the functions of cell.py take them."""
+    ends = (
+        _blend(rows[j, k], rows[j + 1, k], t) for rows in (table.texels, table.slopes) for k in (i, i + 1)
+    )
+    return *ends, table.warp.widths(table.width)[i]
 
 
 def pdf(table: Table, theta_r: Array, x: Array) -> Array:
     """(n,) density, per rad, with which sample draws x (n,) at theta_r (n,); 0 outside the domain."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
-    _, h, _, slope = locate(table, theta_r, np.nan_to_num(x))
+    _, _, slope = locate(table, theta_r, np.nan_to_num(x))
     low, high = np.float32(table.domain)
-    return np.where((x >= low) & (x <= high), h / slope, 0.0)
+    return np.where((x >= low) & (x <= high), 1 / slope, 0.0)
 
 
 def invert(table: Table, theta_r: Array, x: Array) -> Array:
@@ -139,7 +141,8 @@ def invert(table: Table, theta_r: Array, x: Array) -> Array:
 def invert_tail(table: Table, theta_r: Array, x: Array) -> tuple[Array, Array]:
     """(m, upper), each (n,): u = m, or u = 1 - m where upper."""
     theta_r, x = np.broadcast_arrays(np.atleast_1d(theta_r), np.atleast_1d(x))
-    i, h, f, _ = locate(table, theta_r, x)
+    i, f, _ = locate(table, theta_r, x)
+    h = table.warp.widths(table.width)[i]
     m, _ = table.warp.knots(table.width)
     low, high = m[i] + f * h, m[i + 1] + (1 - f) * h
     # whether the cell lies above u = 1/2; the middle one is counted from the low end

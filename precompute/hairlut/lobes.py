@@ -5,6 +5,7 @@ theta_i, or the relative azimuth phi. It is cut to its domain, not wrapped, and 
 angles are in radians.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -24,13 +25,24 @@ LOBES = DIRECT, MULTIPLE = "direct", "multiple"
 AZIMUTHS = DIFFERENCE, SUM = "difference", "sum"  # what phi is: phi_i - phi_r, phi_i + phi_r
 NO_AZIMUTH = "none"
 
-_INCLINATION = {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)}
-SPACE = {
-    DIRECT_THETA: _INCLINATION,
-    DIRECT_PHI: {"angle": "phi", "domain": (0.0, 2 * np.pi)},
-    MULTIPLE_THETA: _INCLINATION,
+MAX_LOBES = 16
+LOBE_NAME = r"[a-z][a-z0-9_]{0,30}"
+_SPACE = {
+    "theta": {"angle": "theta_i", "domain": (-HALF_PI, HALF_PI)},
+    "phi": {"angle": "phi", "domain": (0.0, 2 * np.pi)},
 }
-"""The angle of each table and the range of it that the table spans, rad."""
+
+
+def space(table: str) -> dict:
+    """The angle of a table named <lobe>_theta or <lobe>_phi and the domain that it spans, rad, by the names
+    of Lobe's fields; HairlutError for any other name."""
+    lobe, _, kind = table.rpartition("_")
+    if kind not in _SPACE or not re.fullmatch(LOBE_NAME, lobe):
+        raise HairlutError(
+            f"table {table!r} is not known: expected <lobe>_theta or <lobe>_phi, with a lobe's name of up to "
+            "31 of a-z, 0-9 and _, a letter first"
+        )
+    return _SPACE[kind]
 
 
 @dataclass(frozen=True)
@@ -69,16 +81,26 @@ class Lobe:
 
 @dataclass(frozen=True)
 class Model:
-    """The three lobes of a hair: direct scattering is the product of the first two, eq. (1)."""
+    """The densities of a hair's lobes, each an attribute by its table's name: model.direct_theta.
+
+    lobes   the densities, of different names, at least one of them a <lobe>_theta
+    shares  each lobe's share, in any unit; None: equal shares
+    """
 
     name: str
-    direct_theta: Lobe
-    direct_phi: Lobe
-    multiple_theta: Lobe
+    lobes: tuple[Lobe, ...]
+    shares: tuple[float, ...] | None = None
+
+    def __getattr__(self, name: str) -> Lobe:
+        for lobe in self.__dict__.get("lobes", ()):
+            if lobe.name == name:
+                return lobe
+        raise AttributeError(f"a model without a density {name}")
 
     @property
-    def lobes(self) -> tuple[Lobe, Lobe, Lobe]:
-        return self.direct_theta, self.direct_phi, self.multiple_theta
+    def names(self) -> tuple[str, ...]:
+        """The names of the lobes, in order: of their inclination tables."""
+        return tuple(lobe.name.removesuffix("_theta") for lobe in self.lobes if lobe.angle == "theta_i")
 
 
 def _gaussian_log_density(moments: Moments, x: Array, theta_r: Array) -> Array:
@@ -117,14 +139,13 @@ def _multiple_theta(theta_r: Array) -> tuple[Array, Array]:
 
 def _model(name: str, azimuth: str, direct_theta: Moments, mean_text: str) -> Model:
     relative = {SUM: "phi_i + phi_r", DIFFERENCE: "phi_i - phi_r"}[azimuth]
-    return Model(
-        name,
+    densities = (
         gaussian(
             direct_theta,
             model=name,
             name=DIRECT_THETA,
             azimuth=NO_AZIMUTH,
-            **SPACE[DIRECT_THETA],
+            **space(DIRECT_THETA),
             formula=f"Gaussian of theta_i; mean = {mean_text} - theta_r; sigma = 0.29",
         ),
         gaussian(
@@ -132,7 +153,7 @@ def _model(name: str, azimuth: str, direct_theta: Moments, mean_text: str) -> Mo
             model=name,
             name=DIRECT_PHI,
             azimuth=azimuth,
-            **SPACE[DIRECT_PHI],
+            **space(DIRECT_PHI),
             formula=f"Gaussian of phi = {relative} modulo 2 pi; mean = pi; sigma = theta_r^4 / 4 + 0.59",
         ),
         gaussian(
@@ -140,11 +161,12 @@ def _model(name: str, azimuth: str, direct_theta: Moments, mean_text: str) -> Mo
             model=name,
             name=MULTIPLE_THETA,
             azimuth=NO_AZIMUTH,
-            **SPACE[MULTIPLE_THETA],
+            **space(MULTIPLE_THETA),
             formula="Gaussian of theta_i; mean = (33.5 sin(1.25 theta_r) - 1) * pi/180 - theta_r; "
             "sigma = theta_r^4 / 20 + 0.49",
         ),
     )
+    return Model(name, densities)
 
 
 PRINTED = _model("printed", SUM, _printed_direct_theta, "(3 theta_r - 2 * pi/180)")

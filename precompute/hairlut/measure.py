@@ -15,6 +15,7 @@ have. The table is taken as its texels in double precision: rounding inside a re
 test of the runtime, not of the table.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +41,7 @@ LOBATTO = (
 ) / 2  # where weights are largest: at ends
 LOBATTO_WEIGHTS = np.array([9, 49, 64, 49, 9]) / 180
 ENDS = np.array([0.0, 1.0])
+DENSE = np.linspace(0, 1, 65)
 # What ORDER points, weighted, give as the coefficients of the two highest Legendre polynomials that they
 # resolve.
 LAST_TWO = np.polynomial.legendre.legvander(_nodes, ORDER - 1)[:, -2:] * (2 * np.arange(ORDER - 2, ORDER) + 1)
@@ -48,6 +50,9 @@ OWN_ERROR = 1e-2
 MAX_FEATURES = 8
 CELL_ERROR = 1e-4  # or this part of a row's variance, shared by its cells
 ROUNDING = 1e-18
+
+
+Reading = Callable[[Table, Array], Cells]
 
 
 @dataclass(frozen=True)
@@ -125,19 +130,24 @@ def measure(
     quantiles: bool = True,
     exact: Exact | None = None,
     at: Array | None = None,
+    read: Reading = cells,
 ) -> Errors:
     """Errors of a table that is to sample the lobe, on its rows and between them.
 
     quantiles: also compare quantiles, which takes most of the time. exact: the lobe at these inclinations, if
-    the caller has it already. at: numbers of the inclinations that are measured, if not all.
+    the caller has it already. at: numbers of the inclinations that are measured, if not all. read: the rule
+    by which the table is read (the study compares others).
     """
     exact = exact or exact_at(lobe, inclinations(table.theta_r_range, table.height, between))
     at = np.arange(len(exact.theta_r)) if at is None else at
     step = max(1, CHUNK // (ORDER * (table.width - 1 + exact.knots.shape[1])))
-    parts = [_densities(table, exact, at[n : n + step]) for n in range(0, len(at), step)]
+    parts = [
+        _densities(read(table, exact.theta_r[part]), table.domain, exact, part)
+        for part in (at[n : n + step] for n in range(0, len(at), step))
+    ]
     variance, weight, heavy, variation, lost = (np.concatenate(column) for column in zip(*parts, strict=True))
     if quantiles:
-        quantile, inner = _quantiles(table, exact, at)
+        quantile, inner = _quantiles(table, exact, at, read)
     else:
         quantile = inner = np.full(len(variance), np.nan)
     return Errors(exact.theta_r[at], variance, weight, heavy, variation, lost, quantile, inner)
@@ -167,22 +177,21 @@ def narrowest_cell(texels: Array) -> float:
     return float((np.diff(texels.astype(np.float64), axis=1) / size).min())
 
 
-def _densities(table: Table, exact: Exact, row: Array) -> tuple[Array, ...]:
+def _densities(read: Cells, domain: tuple[float, float], exact: Exact, row: Array) -> tuple[Array, ...]:
     """(variance, weight, heavy, variation, lost) of the inclinations numbered row."""
-    read = cells(table, exact.theta_r[row])
     n, i, low, size = _panels(read, exact.knots[row])
     square, absolute, heavy, reached = (np.zeros(len(row)) for _ in range(4))
     at_knots, _ = _weights(read, exact, row, n, i, low + size * ENDS[:, None])
     weight = np.maximum.reduceat(at_knots.max(axis=0), np.searchsorted(n, np.arange(len(row))))
     for depth in range(MAX_DEPTH):
         w, du = _weights(read, exact, row, n, i, low + size * NODES[:, None])
-        np.maximum.at(weight, n, w.max(axis=0))
+        weight = np.maximum(weight, _peaks(read, exact, row, (n, i, low, size), w.max(axis=0)))
         du = du * (size * WEIGHTS[:, None])
         squares = du * (w - 1) ** 2
         value = squares.sum(axis=0)
         tail = abs(LAST_TWO.T @ squares).sum(axis=0)
         if depth == 0:
-            allowed = CELL_ERROR / table.width * np.bincount(n, value, len(row)) + ROUNDING
+            allowed = CELL_ERROR / len(read.h) * np.bincount(n, value, len(row)) + ROUNDING
         split = tail > np.maximum(OWN_ERROR * value, allowed[n])
         split |= exact.features(row[n], *read.angle_at(n, i, np.array([low, low + size]))) > MAX_FEATURES
         split &= depth < MAX_DEPTH - 1
@@ -193,16 +202,27 @@ def _densities(table: Table, exact: Exact, row: Array) -> tuple[Array, ...]:
             break
         n, i, size, low = (np.repeat(values[split], 2) for values in (n, i, size / 2, low))
         low[1::2] += size[1::2]
-    low_end, high_end = np.float32(table.domain)
-    cut = (read.x0[:, 0] > low_end) | (read.x0[:, -1] + read.d[:, -1] < high_end)
+    low_end, high_end = np.float32(domain)
+    cut = (read.x[:, 0] > low_end) | (read.x[:, -1] < high_end)
     lost = np.where(cut, np.maximum(1 - reached, 0.0), 0.0)
     return square - 2 * lost, weight, heavy, (absolute + lost) / 2, lost
+
+
+def _peaks(read: Cells, exact: Exact, row: Array, panels: tuple[Array, ...], w: Array) -> Array:
+    """The largest weight of each inclination in that of its panels where w (P,), seen at few places, is
+    largest; 0 for an inclination without panels."""
+    order = np.lexsort((w, panels[0]))
+    last = np.append(np.flatnonzero(np.diff(panels[0][order])), len(w) - 1)
+    n, i, low, size = (part[order[last]] for part in panels)
+    weight = np.zeros(len(row))
+    weight[n] = _weights(read, exact, row, n, i, low + size * DENSE[:, None])[0].max(axis=0)
+    return weight
 
 
 def _panels(read: Cells, knots: Array) -> tuple[Array, Array, Array, Array]:
     """The cells, cut at the knots (n, K) of the exact density: inclinations and cells (P,) by number, and
     the fractions of the cells at which the panels begin and that they span."""
-    at = np.tile(np.arange(read.d.shape[1] + 1.0), (len(knots), 1))
+    at = np.tile(np.arange(read.x.shape[1] + 0.0), (len(knots), 1))
     at = np.sort(np.concatenate([at, read.column(knots)], axis=1), axis=1)
     n, k = np.nonzero(np.diff(at) > 0)
     i = at[n, k].astype(int)
@@ -211,16 +231,16 @@ def _panels(read: Cells, knots: Array) -> tuple[Array, Array, Array, Array]:
 
 def _weights(read: Cells, exact: Exact, row: Array, n: Array, i: Array, f: Array) -> tuple[Array, Array]:
     """(f/q, du/df) at the fractions f (K, P) of the cells n, i (P,), between two knots each."""
-    du = read.h[i]
-    return exact.density(read.angle_at(n, i, f), row[n]) * read.slope_at(n, i, f) / du, du
+    angle, slope = read.read_at(n, i, f)
+    return exact.density(angle, row[n]) * slope, read.h[i]
 
 
-def _quantiles(table: Table, exact: Exact, at: Array) -> tuple[Array, Array]:
+def _quantiles(table: Table, exact: Exact, at: Array, read: Reading) -> tuple[Array, Array]:
     """Per inclination, the largest quantile error in the whole and in the inner range of u."""
     m, upper = _probabilities(table)
     i, f = table.warp.place(m, upper, table.width)
-    read = cells(table, exact.theta_r[at])
-    error = abs(read.angle_at(np.arange(len(at))[:, None], i, f) - exact.quantiles(m, upper, at))
+    knots = read(table, exact.theta_r[at])
+    error = abs(knots.angle_at(np.arange(len(at))[:, None], i, f) - exact.quantiles(m, upper, at))
     return error.max(axis=1), error[:, m >= INNER].max(axis=1)
 
 

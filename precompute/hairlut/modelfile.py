@@ -1,6 +1,7 @@
-"""A model from a file: a hair's own three lobes, written in Python or TOML, or fitted by `hairlut fit`.
+"""A model from a file: a hair's own lobes, written in Python or TOML, or as masses of cells.
 
-A **Python file** defines `LOBES`, one of each name, in any order:
+A **Python file** defines `LOBES`: for each lobe a density named <lobe>_theta, and where the azimuth is not
+uniform one named <lobe>_phi:
 
     import numpy as np
     from hairlut.modelfile import density, gaussian
@@ -11,11 +12,13 @@ A **Python file** defines `LOBES`, one of each name, in any order:
         gaussian("multiple_theta", mean=lambda theta_r: -0.4 * theta_r, sigma=0.5),
     )
     AZIMUTH = "difference"     # or "sum": whether phi is phi_i - phi_r (the default) or phi_i + phi_r
+    SHARES = {"direct": 0.7, "multiple": 0.3}    # of the samples, in any unit (default: equal)
     INPUTS = ("table.csv",)    # files beside it that it reads: when they change, the textures are out of date
 
 Angles are in radians. Every function gets NumPy arrays that broadcast against each other and works element
-by element. `direct_theta` and `multiple_theta` are densities of theta_i in [-pi/2, pi/2], `direct_phi` of
-the relative azimuth in [0, 2 pi). None has to be normalised. precompute/examples/ holds such files.
+by element. A <lobe>_theta is a density of theta_i in [-pi/2, pi/2], a <lobe>_phi of the relative azimuth in
+[0, 2 pi). None has to be normalised. Settings are upper case; a name that is almost one of them is refused.
+precompute/examples/ holds such files.
 
 A **TOML file** gives Gaussians as numbers, one for each tabulated theta_r, or one number for all:
 
@@ -24,7 +27,8 @@ A **TOML file** gives Gaussians as numbers, one for each tabulated theta_r, or o
     theta_r_deg = [-60, 0, 60]
     sigma_rad = 0.29
     shift_deg = [-5, -3, 1]     # mean of theta_i + theta_r; mean_deg would be the mean of theta_i itself
-    [direct_phi]                # likewise, and [multiple_theta]
+    [direct_phi]                # likewise, and [multiple_theta], or lobes of other names
+    [shares]                    # a number for each lobe, if they are not equal
 
 Each angle's name ends in `_deg` or `_rad`. Between the numbers a monotone cubic runs, which does not
 overshoot; outside them the nearest number holds.
@@ -37,8 +41,9 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from traceback import extract_tb
@@ -50,19 +55,18 @@ from scipy.interpolate import PchipInterpolator
 from . import lobes
 from .errors import HairlutError
 from .lobecheck import check_lobe
-from .lobes import AZIMUTHS, DIFFERENCE, MODELS, NO_AZIMUTH, SPACE, TABLES, Lobe, Model
+from .lobes import AZIMUTHS, DIFFERENCE, MAX_LOBES, MODELS, NO_AZIMUTH, Lobe, Model, space
 from .tabulated import TabulatedDensity
 
 SUFFIXES = (".py", ".toml", ".npz")
+SETTINGS = ("LOBES", "AZIMUTH", "SHARES", "INPUTS")  # of a Python file
 
 KEPT = 16  # tabulated lobes: more than lie between two uses of the same one in a family
 
 
 def _space(name: str) -> dict:
     """What a lobe's name says; its model and azimuth are filled in when the file has been read."""
-    if name not in SPACE:
-        raise HairlutError(f"lobe {name!r} is not known: expected one of {', '.join(TABLES)}")
-    return {"model": "", "name": name, "azimuth": NO_AZIMUTH, **SPACE[name]}
+    return {"model": "", "name": name, "azimuth": NO_AZIMUTH, **space(name)}
 
 
 def gaussian(name: str, mean, sigma, formula: str = "") -> Lobe:
@@ -70,7 +74,7 @@ def gaussian(name: str, mean, sigma, formula: str = "") -> Lobe:
     mean_of, sigma_of = _function(mean), _function(sigma)
     return lobes.gaussian(
         lambda theta_r: (mean_of(theta_r), sigma_of(theta_r)),
-        formula=formula or f"Gaussian of {SPACE.get(name, {}).get('angle', name)}, from a model file",
+        formula=formula or f"Gaussian of {space(name)['angle']}, from a model file",
         **_space(name),
     )
 
@@ -100,7 +104,7 @@ def density(
 def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
     """A lobe given as masses of cells (tabulated.TabulatedDensity); the edges must span the domain."""
     table = _of_masses(name, *(_as_bytes(values) for values in (edges, theta_r, mass)))
-    low, high = SPACE.get(name, _space(name))["domain"]
+    low, high = space(name)["domain"]
     if abs(table.edges[0] - low) > 1e-9 or abs(table.edges[-1] - high) > 1e-9:
         raise HairlutError(
             f"{name}: the cells' edges run from {table.edges[0]:.6g} to {table.edges[-1]:.6g}, "
@@ -156,8 +160,7 @@ def load(path: Path) -> Model:
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", path.stem):
         raise HairlutError(f"{path}: a model takes its file's name: expected letters, digits, '_', '-', '.'")
     reader = {".py": _from_python, ".toml": _from_toml, ".npz": _from_npz}[path.suffix]
-    given, azimuth = reader(path)
-    model = assemble(path.stem, given, azimuth, str(path))
+    model = assemble(path.stem, reader(path), str(path))
     for lobe in model.lobes:
         if not lobe.exact:  # a closed form comes of data that were checked
             check_lobe(lobe, str(path))
@@ -175,20 +178,50 @@ def inputs(path: Path) -> list[Path]:
     return [path, *named]
 
 
-def assemble(name: str, given: Sequence[Lobe], azimuth: str, where: str) -> Model:
-    """A model of the three lobes; HairlutError if one is missing or there twice."""
-    names = [lobe.name for lobe in given]
-    if sorted(names) != sorted(TABLES):
+@dataclass(frozen=True)
+class Given:
+    """What a model file says. lobes: densities; shares: a number for each lobe by name, or none at all."""
+
+    lobes: Sequence[Lobe]
+    azimuth: object = DIFFERENCE
+    shares: Mapping[str, object] | None = None
+
+
+def assemble(name: str, given: Given, where: str) -> Model:
+    """A model of these densities; HairlutError if one is missing or there twice, or a setting is wrong."""
+    names = [lobe.name for lobe in given.lobes]
+    lobes = [name.removesuffix("_theta") for name in names if name.endswith("_theta")]
+    if not 1 <= len(lobes) <= MAX_LOBES:
         raise HairlutError(
-            f"{where}: lobes {', '.join(names) or 'none'}: expected one each of {', '.join(TABLES)}"
+            f"{where}: densities {', '.join(names) or 'none'}: expected <lobe>_theta for 1 to {MAX_LOBES} "
+            "lobes, and <lobe>_phi where the azimuth is not uniform"
         )
-    if azimuth not in AZIMUTHS:
-        raise HairlutError(f"{where}: azimuth {azimuth!r}: expected one of {', '.join(AZIMUTHS)}")
-    named = {
-        lobe.name: replace(lobe, model=name, azimuth=azimuth if lobe.angle == "phi" else NO_AZIMUTH)
-        for lobe in given
-    }
-    return Model(name, *(named[key] for key in TABLES))
+    for one in names:
+        if names.count(one) > 1:
+            raise HairlutError(f"{where}: {one} is there {names.count(one)} times, expected once")
+        if one.endswith("_phi") and one.removesuffix("_phi") not in lobes:
+            raise HairlutError(f"{where}: {one} has no {one.removesuffix('_phi')}_theta beside it")
+    if given.azimuth not in AZIMUTHS:
+        raise HairlutError(f"{where}: azimuth {given.azimuth!r}: expected one of {', '.join(AZIMUTHS)}")
+    azimuths = {"phi": given.azimuth, "theta_i": NO_AZIMUTH}
+    densities = tuple(replace(one, model=name, azimuth=azimuths[one.angle]) for one in given.lobes)
+    return Model(name, densities, _shares(lobes, given.shares, where))
+
+
+def _shares(lobes: list[str], shares: object, where: str) -> tuple[float, ...] | None:
+    """The shares in the order of the lobes."""
+    if shares is None:
+        return None
+    expected = f"expected a number for each of {', '.join(lobes)}, 0 or more, and not all 0"
+    if not isinstance(shares, Mapping) or sorted(shares) != sorted(lobes):
+        found = ", ".join(map(str, shares)) if isinstance(shares, Mapping) else repr(shares)
+        raise HairlutError(f"{where}: shares of {found or 'nothing'}: {expected}")
+    for lobe, share in shares.items():
+        if isinstance(share, bool) or not isinstance(share, (int, float)) or not 0 <= share < np.inf:
+            raise HairlutError(f"{where}: share of {lobe} is {share!r}: {expected}")
+    if not sum(shares.values()) > 0:
+        raise HairlutError(f"{where}: every share is 0: {expected}")
+    return tuple(float(shares[lobe]) for lobe in lobes)
 
 
 # ---- Python
@@ -206,12 +239,21 @@ def _execute(path: Path) -> ModuleType:
     return module
 
 
-def _from_python(path: Path) -> tuple[Sequence[Lobe], str]:
+def _from_python(path: Path) -> Given:
     module = _execute(path)
     given = getattr(module, "LOBES", None)
     if not isinstance(given, (tuple, list)) or not all(isinstance(lobe, Lobe) for lobe in given):
         raise HairlutError(f"{path}: expected LOBES, a tuple of gaussian(), density() or tabulated()")
-    return given, getattr(module, "AZIMUTH", DIFFERENCE)
+    _refuse_misspelt(path, module)
+    return Given(given, getattr(module, "AZIMUTH", DIFFERENCE), getattr(module, "SHARES", None))
+
+
+def _refuse_misspelt(path: Path, module: ModuleType) -> None:
+    """HairlutError for a name that is almost one of SETTINGS; other names are the file's own."""
+    for name in vars(module):
+        near = get_close_matches(name.upper(), SETTINGS, n=1, cutoff=0.8)
+        if near and name not in SETTINGS and not name.startswith("_"):
+            raise HairlutError(f"{path}: {name} is no setting of a model: did you mean {near[0]}?")
 
 
 def _line(error: Exception, path: Path) -> str:
@@ -224,14 +266,20 @@ def _line(error: Exception, path: Path) -> str:
 # ---- TOML
 
 
-def _from_toml(path: Path) -> tuple[Sequence[Lobe], str]:
+def _from_toml(path: Path) -> Given:
     try:
         document = tomllib.loads(path.read_text())
     except tomllib.TOMLDecodeError as error:
         raise HairlutError(f"{path}: {error}") from None
-    tables = {key: value for key, value in document.items() if isinstance(value, dict)}
-    given = [_gaussian_of_numbers(f"{path}: {name}", name, table) for name, table in tables.items()]
-    return given, document.get("azimuth", DIFFERENCE)
+    azimuth, shares = document.pop("azimuth", DIFFERENCE), document.pop("shares", None)
+    for key, value in document.items():
+        if not isinstance(value, dict):
+            raise HairlutError(
+                f"{path}: {key} is not known: expected azimuth, [shares], and a table [<lobe>_theta] or "
+                "[<lobe>_phi] for each density"
+            )
+    given = [_gaussian_of_numbers(f"{path}: {name}", name, table) for name, table in document.items()]
+    return Given(given, azimuth, shares)
 
 
 def _gaussian_of_numbers(where: str, name: str, table: dict) -> Lobe:
@@ -278,20 +326,23 @@ def _through(where: str, theta_r: np.ndarray, values: np.ndarray) -> Callable:
 # ---- npz
 
 
-def _from_npz(path: Path) -> tuple[Sequence[Lobe], str]:
+def _from_npz(path: Path) -> Given:
     with np.load(path, allow_pickle=False) as arrays:
-        missing = [
-            f"{n}.{k}" for n in TABLES for k in ("edges", "theta_r", "mass") if f"{n}.{k}" not in arrays
-        ]
-        if missing:
+        names = [key.removesuffix(".edges") for key in arrays if key.endswith(".edges")]
+        expected = {f"{name}.{key}" for name in names for key in ("edges", "theta_r", "mass")} | {"azimuth"}
+        missing, unknown = sorted(expected - {*arrays, "azimuth"}), sorted({*arrays} - expected)
+        if missing or unknown or not names:
+            problem = f"array {(missing or unknown or ['NAME.edges'])[0]} is "
+            problem += "not known" if unknown and not missing else "missing"
             raise HairlutError(
-                f"{path}: array {missing[0]} is missing: expected a file that `hairlut fit` wrote"
+                f"{path}: {problem}: expected NAME.edges, NAME.theta_r and NAME.mass for each NAME, "
+                "<lobe>_theta or <lobe>_phi, and azimuth"
             )
         try:
             given = [
-                tabulated(n, arrays[f"{n}.edges"], arrays[f"{n}.theta_r"], arrays[f"{n}.mass"])
-                for n in TABLES
+                tabulated(name, *(arrays[f"{name}.{key}"] for key in ("edges", "theta_r", "mass")))
+                for name in names
             ]
         except HairlutError as error:
             raise HairlutError(f"{path}: {error}") from None
-        return given, str(arrays["azimuth"]) if "azimuth" in arrays else DIFFERENCE
+        return Given(given, str(arrays["azimuth"]) if "azimuth" in arrays else DIFFERENCE)

@@ -20,7 +20,6 @@ from functools import cache, partial
 
 import numpy as np
 
-from .cell import Cell
 from .errors import HairlutError
 from .exact import Exact, exact_at
 from .invert import ALL
@@ -31,7 +30,6 @@ from .warp import Warp
 
 DEFAULT_TOLERANCE = 1e-4
 DEFAULT_LIMIT = 256
-CELL = Cell("parabola", 0.95)
 MIN_STEPS = 2.0
 EXPONENTS = range(-34, 1)  # of e
 FIRST_EXPONENT = -16
@@ -73,14 +71,14 @@ def heights(lobe: Lobe, limit: int) -> list[int]:
     return ladder(limit)
 
 
-def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cell: Cell = CELL) -> Choice:
+def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT) -> Choice:
     """The table of fewest texels with V <= tolerance and sides of the ladder up to limit, or
     ToleranceError."""
     if not tolerance > 0:
         raise HairlutError(
             f"tolerance {tolerance!r}: expected a relative variance above 0, such as {DEFAULT_TOLERANCE:g}"
         )
-    trials = _Trials(lobe, cell)
+    trials = _Trials(lobe)
     width, height, exponent = _smallest_size(trials, tolerance, limit)
     while (variance := trials.variance(width, height, exponent, BETWEEN)) > tolerance:
         taller = [side for side in heights(lobe, limit) if side > height]
@@ -92,11 +90,11 @@ def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT, cel
     return trials.choice(width, height, exponent, reason)
 
 
-def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Choice:
+def table_of_size(lobe: Lobe, width: int, height: int) -> Choice:
     """The table of a given size; HairlutError where some cell is too narrow for float32 with every e."""
     check_size(width, height)
     exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, BETWEEN))
-    tables = {e: _usable(lobe, exact, width, e, cell, ON_ROWS) for e in EXPONENTS}
+    tables = {e: _usable(lobe, exact, width, e, ON_ROWS) for e in EXPONENTS}
     tables = {e: table for e, table in tables.items() if table}
     if not tables:
         raise HairlutError(
@@ -109,13 +107,11 @@ def table_of_size(lobe: Lobe, width: int, height: int, cell: Cell = CELL) -> Cho
     )
 
 
-def _usable(
-    lobe: Lobe, exact: Exact, width: int, exponent: int, cell: Cell, rows: slice = ALL
-) -> Table | None:
+def _usable(lobe: Lobe, exact: Exact, width: int, exponent: int, rows: slice = ALL) -> Table | None:
     """The table whose rows are these of the exact lobe's; None if a cell is flat or too narrow for
     float32."""
     try:
-        table = tabulate(lobe, exact, width, Warp("octaves", 2.0**exponent), cell, rows)
+        table = tabulate(lobe, exact, width, Warp("octaves", 2.0**exponent), rows)
     except HairlutError:  # flat cells
         return None
     return table if narrowest_cell(table.texels) >= MIN_STEPS else None
@@ -145,8 +141,8 @@ def _lightest(tables: dict[int, Table], lobe: Lobe, exact: Exact) -> int:
 class _Trials:
     """Tables of one lobe, on integrals that are worked out once for each height."""
 
-    def __init__(self, lobe: Lobe, cell: Cell):
-        self.lobe, self.cell = lobe, cell
+    def __init__(self, lobe: Lobe):
+        self.lobe = lobe
         self.rows = cache(self._rows)
         self.exact = cache(self._exact)
         self.variance = cache(self._variance)
@@ -158,7 +154,7 @@ class _Trials:
         return exact_at(self.lobe, inclinations(self.lobe.theta_r_range, height, between))
 
     def table(self, width: int, height: int, exponent: int) -> Table | None:
-        return _usable(self.lobe, self.rows(height), width, exponent, self.cell)
+        return _usable(self.lobe, self.rows(height), width, exponent)
 
     def _variance(self, width: int, height: int, exponent: int, between: int) -> float:
         """V at the worst inclination; infinite where a cell is flat or too narrow for float32."""

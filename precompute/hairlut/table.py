@@ -4,14 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cell import Cell
+from .digest import digest
 from .errors import HairlutError
 from .exact import Exact, exact_at
 from .invert import ALL
 from .lobes import Array, Lobe
+from .slopes import fitted
 from .warp import Warp
 
-MIN_WIDTH, MIN_HEIGHT, MAX_SIDE = 4, 2, 16384
+MIN_WIDTH, MIN_HEIGHT, MAX_SIDE = 4, 2, 4096
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,7 @@ class Table:
     """A table and all that its file's header says of it.
 
     texels      (height, width) float32, rad, strictly increasing along each row
+    slopes      (height, width) float32, dx/du at each texel, rad per unit of u, positive
     log_mass    (height,) logarithm of the lobe's mass inside its domain, by which each row was normalised
     parameters  Lobe.formula; the other fields as in Lobe
     """
@@ -31,8 +33,8 @@ class Table:
     theta_r_range: tuple[float, float]
     parameters: str
     warp: Warp
-    cell: Cell
     texels: Array
+    slopes: Array
     log_mass: Array
 
     @property
@@ -42,6 +44,16 @@ class Table:
     @property
     def height(self) -> int:
         return self.texels.shape[0]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the angles and slopes."""
+        return self.texels.nbytes + self.slopes.nbytes
+
+    @property
+    def digest(self) -> str:
+        """What mixture.exr names the table's contents by."""
+        return digest([self.texels, self.slopes])
 
     @property
     def theta_r(self) -> Array:
@@ -62,32 +74,40 @@ def check_size(width: int, height: int) -> None:
         )
 
 
-def bake_table(lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell) -> Table:
+def bake_table(lobe: Lobe, width: int, height: int, warp: Warp) -> Table:
     """Integrates, normalises, inverts and rounds a lobe once; HairlutError if a cell comes out flat."""
-    return tabulate(lobe, exact_at(lobe, row_angles(lobe.theta_r_range, height)), width, warp, cell)
+    return tabulate(lobe, exact_at(lobe, row_angles(lobe.theta_r_range, height)), width, warp)
 
 
-def tabulate(
-    lobe: Lobe, exact: Exact, width: int, warp: Warp, cell: Cell, rows: slice | Array = ALL
-) -> Table:
+def tabulate(lobe: Lobe, exact: Exact, width: int, warp: Warp, rows: slice | Array = ALL) -> Table:
     """The table whose rows are these of the exact lobe's, evenly spaced over the lobe's range of theta_r."""
     theta_r = exact.theta_r[rows]
     check_size(width, len(theta_r))
-    texels = exact.quantiles(*warp.knots(width), rows).astype(np.float32)
+    m, upper = warp.knots(width)
+    middle = (m[0] + m[1]) / 2  # of the first cell, and of the last one from its end
+    quantiles = exact.quantiles(np.append(m, [middle, middle]), np.append(upper, [False, True]), rows)
+    x, middles = quantiles[:, :-2], (quantiles[:, -2], quantiles[:, -1])
+    texels = x.astype(np.float32)
     _refuse_flat_cells(lobe, theta_r, texels, warp)
     return Table(
-        lobe.model,
-        lobe.name,
-        lobe.angle,
-        lobe.azimuth,
-        lobe.domain,
-        lobe.theta_r_range,
-        lobe.formula,
-        warp,
-        cell,
-        texels,
-        exact.log_mass[rows],
+        model=lobe.model,
+        name=lobe.name,
+        angle=lobe.angle,
+        azimuth=lobe.azimuth,
+        domain=lobe.domain,
+        theta_r_range=lobe.theta_r_range,
+        parameters=lobe.formula,
+        warp=warp,
+        texels=texels,
+        slopes=fitted(x, warp.widths(width), _density(exact, x, rows), middles).astype(np.float32),
+        log_mass=exact.log_mass[rows],
     )
+
+
+def _density(exact: Exact, x: Array, rows: slice | Array) -> Array:
+    """(R, K) density of the lobe at the angles x (R, K) of these rows, per rad."""
+    numbers = np.arange(len(exact.theta_r))[rows]
+    return exact.density(x.reshape(1, -1), np.repeat(numbers, x.shape[1])).reshape(x.shape)
 
 
 def _refuse_flat_cells(lobe: Lobe, theta_r: Array, texels: Array, warp: Warp) -> None:

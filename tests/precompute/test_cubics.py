@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from hairlut import modelfile
-from hairlut.cell import Cell
 from hairlut.cubics import Cubics
 from hairlut.exact import Exact, exact_at
 from hairlut.lobes import HALF_PI
@@ -106,9 +105,7 @@ def test_a_table_costs_what_its_measurement_by_integration_says(lobe, exponent):
     """The panels between knots, and the few places at which a search looks, against bisected cells."""
     by_integration = replace(lobe, exact=None)
     exact = exact_at(lobe, np.linspace(*lobe.theta_r_range, 73))
-    table = tabulate(
-        lobe, exact, 48, Warp("octaves", 2.0**exponent), Cell("parabola", 0.9), slice(None, None, 2)
-    )
+    table = tabulate(lobe, exact, 48, Warp("octaves", 2.0**exponent), slice(None, None, 2))
     expected = measure(table, by_integration, between=1)
     found = measure(table, lobe, exact=exact)
     for name, value in expected.summary().items():

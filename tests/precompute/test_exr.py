@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import zlib
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,6 @@ import OpenEXR
 import pytest
 
 from hairlut import exr
-from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.lobes import FITTED, PRINTED
 from hairlut.table import bake_table
@@ -18,7 +18,7 @@ from hairlut.warp import Warp
 
 @pytest.fixture(scope="module")
 def table():
-    return bake_table(FITTED.direct_phi, 12, 5, Warp("octaves", 2.0**-12), Cell("parabola", 0.9))
+    return bake_table(FITTED.direct_phi, 12, 5, Warp("octaves", 2.0**-12))
 
 
 @pytest.fixture
@@ -36,25 +36,28 @@ def rewrite(path, change=None, pixels=None, drop=None):
     header.pop(drop, None)
     header |= change or {}
     if pixels is not None:
-        channels = pixels(channels["Y"])
+        channels |= pixels(channels["Y"])
+        channels = {name: data for name, data in channels.items() if data is not None}
+        digest = zlib.crc32(np.stack([*map(np.float32, channels.values())], axis=-1).tobytes())
+        header["hairlut.digest"] = f"crc32 {digest:08x}"
     channels = {name: np.ascontiguousarray(data) for name, data in channels.items()}
     with OpenEXR.File(header, channels) as file:
         file.write(str(path))
 
 
 @pytest.mark.parametrize("warp", [Warp("uniform"), Warp("octaves", 2.0**-14), Warp("octaves", 0.1)], ids=str)
-@pytest.mark.parametrize("cell", [Cell("linear"), Cell("parabola", 0.9)], ids=str)
 @pytest.mark.parametrize("size", [(4, 2), (33, 7)])
-def test_round_trip(tmp_path, warp, cell, size):
+def test_round_trip(tmp_path, warp, size):
     for lobe in FITTED.lobes:
-        table = bake_table(lobe, *size, warp, cell)
+        table = bake_table(lobe, *size, warp)
         path = tmp_path / "new" / "directory" / f"{lobe.name}.exr"
         exr.write(path, table, {"quantile": 1.5e-3, "largest_weight": 2.0})
         again, errors = exr.read(path)
         np.testing.assert_array_equal(again.texels, table.texels)
-        assert again.texels.dtype == np.float32
+        np.testing.assert_array_equal(again.slopes, table.slopes)
+        assert again.texels.dtype == again.slopes.dtype == np.float32
         np.testing.assert_allclose(again.log_mass, table.log_mass, rtol=0, atol=1e-12)
-        plain = {"texels": None, "log_mass": None}
+        plain = {"texels": None, "slopes": None, "log_mass": None}
         assert replace(again, **plain) == replace(table, **plain)
         assert errors == {"quantile": 1.5e-3, "largest_weight": 2.0}
         assert [p.name for p in path.parent.iterdir() if p.suffix != ".exr"] == []
@@ -63,9 +66,9 @@ def test_round_trip(tmp_path, warp, cell, size):
 def test_header_is_what_the_format_page_says(path, table):
     with OpenEXR.File(str(path)) as file:
         header = dict(file.header())
-        assert list(file.channels()) == ["Y"]
+        assert list(file.channels()) == ["Y", "dxdu"]
     assert header["colorInteropID"] == "data"
-    assert header["hairlut.format"] == 1
+    assert header["hairlut.format"] == 2
     assert header["hairlut.model"] == "fitted"
     assert header["hairlut.table"] == "direct_phi"
     assert header["hairlut.angle"] == "phi"
@@ -74,7 +77,9 @@ def test_header_is_what_the_format_page_says(path, table):
     assert header["hairlut.theta_r_range"] == "-1.5707963267948966 1.5707963267948966"
     assert header["hairlut.domain"] == "0.0 6.283185307179586"
     assert header["hairlut.warp"] == "octaves e=0.000244140625"
-    assert header["hairlut.cell"] == "parabola limit=0.9"
+    assert header["hairlut.cell"] == "rational quadratic"
+    interleaved = np.stack([table.texels, table.slopes], axis=-1).tobytes()
+    assert header["hairlut.digest"] == f"crc32 {zlib.crc32(interleaved):08x}"
     assert header["hairlut.error.relative_variance"] == "1.250e-03"
     np.testing.assert_array_equal([float(x) for x in header["hairlut.knots"].split()], table.warp.u(12))
     assert header["compression"] == OpenEXR.ZIP_COMPRESSION
@@ -106,9 +111,9 @@ REQUIRED = [
     "warp",
     "cell",
     "knots",
-    "parameters",
-    "log_mass",
+    "digest",
 ]
+OPTIONAL = ["generator", "parameters", "log_mass", "error.relative_variance"]
 
 
 def refusal(path):
@@ -128,15 +133,21 @@ def test_missing_attribute(path, name):
     assert "hairlut bake" in message
 
 
+@pytest.mark.parametrize("name", OPTIONAL)
+def test_attributes_that_a_file_may_lack(path, table, name):
+    rewrite(path, drop=f"hairlut.{name}")
+    np.testing.assert_array_equal(exr.read(path)[0].texels, table.texels)
+
+
 @pytest.mark.parametrize(
     ("name", "value", "reason"),
     [
-        ("format", 2, "is 2, expected 1 or less: use a newer hairlut"),
+        ("format", 3, "is 3, expected 2 or less: use a newer hairlut"),
         ("format", 0, "is 0, expected 1"),
         ("format", "1", "is '1', expected 1"),
         ("unit", "deg", "is 'deg', expected 'rad'"),
-        ("angle", "phi_i", "is 'phi_i', expected 'theta_i' or 'phi'"),
-        ("azimuth", "wrapped", "is 'wrapped', expected 'sum' or 'difference' or 'none'"),
+        ("angle", "phi_i", "is 'phi_i', expected 'phi'"),
+        ("azimuth", "wrapped", "is 'wrapped', expected 'difference' or 'sum'"),
         ("table", "multiple_theta", "is 'multiple_theta', expected 'direct_phi': rename the file"),
         ("theta_r_range", "1.0 -1.0", "expected two increasing numbers"),
         ("theta_r_range", "1.0", "expected 2 finite numbers"),
@@ -144,7 +155,9 @@ def test_missing_attribute(path, name):
         ("domain", "zero one", "expected 2 finite numbers"),
         ("warp", "cubic", "is 'cubic' (warp cubic is not known: expected 'octaves"),
         ("warp", "octaves e=0.5", None),
-        ("cell", "parabola limit=2", "expected a limit"),
+        ("cell", "parabola limit=0.9", "expected 'rational quadratic'"),
+        ("digest", "crc32 00000000", "they were changed after they were written"),
+        ("domain", "0.0 7.0", "expected to lie in"),
         ("knots", "0.0 1.0", "expected 12 finite numbers"),
         ("log_mass", "0.0", "expected 5 finite numbers"),
         ("error.relative_variance", "small", "expected 1 finite numbers"),
@@ -183,12 +196,16 @@ def broken(j, i, value):
         (broken(4, 5, 0.0), "row 4, columns 4 and 5"),
         (broken(0, 0, -1.0), "row 0 runs from -1 to"),
         (broken(1, 11, 7.0), "row 1 runs from 0 to 7"),
-        (lambda y: {"Y": np.repeat(y[:, :1], 12, axis=1)}, "expected strictly increasing angles"),
+        (lambda y: {"Y": np.repeat(y[:, :1], 12, axis=1)}, "expected angles that increase"),
         (lambda y: {"Y": y.astype(np.float16)}, "channel Y is float16, expected 32-bit float"),
-        (lambda y: {"R": y}, "channels are R, expected Y alone"),
-        (lambda y: {"Y": y, "Z": y}, "channels are Y, Z, expected Y alone"),
-        (lambda y: {"Y": y[:, :3]}, "expected a width of 4"),
-        (lambda y: {"Y": y[:1]}, "a height of 2"),
+        (lambda y: {"Y": None, "R": y}, "channels are R, dxdu, expected Y, dxdu"),
+        (lambda y: {"Z": y}, "channels are Y, Z, dxdu, expected Y, dxdu"),
+        (lambda y: {"Y": y[:, :3], "dxdu": y[:, :3]}, "expected a width of 4"),
+        (lambda y: {"Y": y[:1], "dxdu": y[:1]}, "a height of 2"),
+        (lambda y: {"dxdu": 0 * y}, "row 0, column 0: dxdu is 0, expected 1e-09 to 1e+12"),
+        (lambda y: {"dxdu": y + np.nan}, "row 0, column 0: dxdu is nan, expected"),
+        (lambda y: {"dxdu": y + 1e13}, "expected 1e-09 to 1e+12"),
+        (lambda y: {"dxdu": None}, "channels are Y, expected Y, dxdu"),
     ],
 )
 def test_wrong_texels(path, pixels, reason):
@@ -240,6 +257,6 @@ def test_a_failed_write_leaves_the_old_file(path, table, monkeypatch):
 
 
 def test_a_wrong_name_is_not_written(tmp_path):
-    table = bake_table(PRINTED.direct_theta, 8, 4, Warp("octaves", 2.0**-10), Cell("linear"))
+    table = bake_table(PRINTED.direct_theta, 8, 4, Warp("octaves", 2.0**-10))
     with pytest.raises(HairlutError, match=r"must be named direct_theta\.exr"):
         exr.write(tmp_path / "theta.exr", table)

@@ -7,7 +7,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hairlut import analytic
-from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.integrate import integrate, rows_of_lobe
 from hairlut.lobes import HALF_PI, PRINTED, gaussian
@@ -17,7 +16,6 @@ from precompute import truth
 from precompute.numerical import quantiles
 
 WARP = Warp("octaves", 2.0**-20)
-CELL = Cell("parabola", 0.9)
 ONE_ROW = np.zeros(1)
 
 
@@ -52,7 +50,7 @@ def constant_gaussian(mean, sigma):
 def test_mean_forty_sigma_outside(side, sigma):
     mean = side * (HALF_PI + 40 * sigma)
     lobe = constant_gaussian(mean, sigma)
-    table = bake_table(lobe, 16, 4, Warp("octaves", 2.0**-14), CELL)
+    table = bake_table(lobe, 16, 4, Warp("octaves", 2.0**-14))
     exact = truth.gaussian_mass(mp.mpf(mean), mp.mpf(sigma), mp.mpf(-HALF_PI), mp.mpf(HALF_PI))
     assert float(exact) == 0.0  # the mass underflows a double
     assert table.log_mass == pytest.approx(float(mp.log(exact)), rel=1e-14)
@@ -173,13 +171,13 @@ def test_integrable_singularity_and_exponential(make_lobe):
 )
 def test_what_cannot_be_integrated_is_named(make_lobe, log_density, reason):
     with pytest.raises(HairlutError, match=rf"^test/direct_theta at theta_r = 0 rad: .*{reason}"):
-        bake_table(make_lobe(log_density, theta_r_range=(0, 1)), 16, 2, WARP, CELL)
+        bake_table(make_lobe(log_density, theta_r_range=(0, 1)), 16, 2, WARP)
 
 
 def test_flat_cells_are_refused(make_lobe, normal):
     lobe = make_lobe(normal(1.0, 1e-7))
     with pytest.raises(HairlutError, match=r"round to the same float .* fewer columns or a larger e"):
-        bake_table(lobe, 64, 2, WARP, CELL)
+        bake_table(lobe, 64, 2, WARP)
 
 
 def test_rows_do_not_depend_on_each_other(lobe):

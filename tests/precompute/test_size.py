@@ -15,7 +15,7 @@ from hairlut.exact import exact_at
 from hairlut.exr import read
 from hairlut.lobes import FITTED, MODELS
 from hairlut.measure import flat_cells, inclinations, measure, narrowest_cell
-from hairlut.size import CELL, ToleranceError, ladder, smallest_table, table_of_size
+from hairlut.size import ToleranceError, ladder, smallest_table, table_of_size
 from hairlut.table import bake_table, tabulate
 from hairlut.warp import Warp
 from precompute.test_cubics import two_peaked
@@ -51,7 +51,7 @@ def test_64x64(lobe):
 
 def test_256x256(lobe):
     """One e for all lobes: the choice of e is tested at 64x64, and its search would take longer here."""
-    table = bake_table(lobe, 256, 256, Warp("octaves", 2.0**-17), CELL)
+    table = bake_table(lobe, 256, 256, Warp("octaves", 2.0**-17))
     errors = measure(table, lobe, quantiles=False)
     assert errors.relative_variance <= 3e-5
     assert errors.largest_weight <= 12
@@ -68,14 +68,14 @@ def test_no_smaller_table_of_the_same_width_or_height_meets_the_tolerance(tolera
     for smaller in ((narrower, height), (width, lower)):
         best = min(
             measure(
-                bake_table(lobe, *smaller, Warp("octaves", e), CELL),
+                bake_table(lobe, *smaller, Warp("octaves", e)),
                 lobe,
                 quantiles=False,
             ).relative_variance
             for e in EXPONENTS
         )
         assert best > tolerance
-    larger_e = bake_table(lobe, width, height, Warp("octaves", 2 * choice.table.warp.e), CELL)
+    larger_e = bake_table(lobe, width, height, Warp("octaves", 2 * choice.table.warp.e))
     assert measure(larger_e, lobe, quantiles=False).relative_variance > tolerance
 
 
@@ -116,7 +116,7 @@ def test_e_is_the_lightest_within_a_tenth_of_the_least_variance(name):
     exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, 1))
     found = {}
     for e in EXPONENTS:
-        table = tabulate(lobe, exact, width, Warp("octaves", e), CELL, slice(None, None, 2))
+        table = tabulate(lobe, exact, width, Warp("octaves", e), slice(None, None, 2))
         found[e] = measure(table, lobe, exact=exact, quantiles=False)
     least = min(errors.relative_variance for errors in found.values())
     good = [e for e in found if found[e].relative_variance <= size.SLACK * least]

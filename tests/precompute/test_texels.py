@@ -61,7 +61,7 @@ def test_end_columns_are_the_domain(shipped):
 
 def test_shipped_tables_come_out_again(shipped):
     table, _, lobe, _ = shipped
-    again = bake_table(lobe, table.width, table.height, table.warp, table.cell)
+    again = bake_table(lobe, table.width, table.height, table.warp)
     np.testing.assert_array_equal(again.texels, table.texels)
 
 

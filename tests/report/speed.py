@@ -6,14 +6,15 @@ from pathlib import Path
 import numpy as np
 
 from hairlut import exr, figures
-from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.lobes import FITTED
 from hairlut.measure import Errors, flat_cells, measure, narrowest_cell
-from hairlut.size import CELL, EXPONENTS, MIN_STEPS, table_of_size
+from hairlut.model import assemble
+from hairlut.size import EXPONENTS, MIN_STEPS, table_of_size
 from hairlut.table import Table, bake_table
 from hairlut.warp import Warp
 from report import timing
+from report.cells import LINEAR, PARABOLA, RATIONAL, Cell
 from report.markdown import table as markdown_table
 from report.study import as_half
 
@@ -65,19 +66,16 @@ def bake_sizes(folder: Path, sides=SIDES) -> list[Point]:
     """Writes a model directory for each side below folder; the points of every design at every side."""
     points = []
     for side in sides:
-        e = write_model(folder / str(side), side)
+        e = write_square_model(folder / str(side), side)
         points += designs(side, Warp("octaves", e))
     return points
 
 
-def write_model(folder: Path, side: int) -> float:
+def write_square_model(folder: Path, side: int) -> float:
     """Bakes the fitted model square; the e of its LOBE."""
-    for lobe in FITTED.lobes:
-        table = square(lobe, side)
-        exr.write(folder / f"{lobe.name}.exr", table)
-        if lobe is LOBE:
-            e = table.warp.e
-    return e
+    tables = {lobe.name: square(lobe, side) for lobe in FITTED.lobes}
+    exr.write_model(folder, assemble(FITTED, tables))
+    return tables[LOBE.name].warp.e
 
 
 def square(lobe, side: int) -> Table:
@@ -93,33 +91,35 @@ def square(lobe, side: int) -> Table:
 
 def bake_unless_flat(lobe, side: int, warp: Warp) -> Table | None:
     try:
-        return bake_table(lobe, side, side, warp, CELL)
+        return bake_table(lobe, side, side, warp)
     except HairlutError:
         return None
 
 
 def designs(side: int, warp: Warp) -> list[Point]:
     """The shipped design and the simpler ones that it displaced, of one size."""
-    curved, linear = CELL, Cell("linear")
     tables = {
-        ("octaves warp, curved cells", "sample/{}"): bake_table(LOBE, side, side, warp, curved),
-        ("octaves warp, linear cells", None): bake_table(LOBE, side, side, warp, linear),
-        ("uniform in u, linear cells", "uniform/{}"): bake_table(LOBE, side, side, Warp("uniform"), linear),
-    }
-    shipped = next(iter(tables.values()))
+        ("octaves warp, curved cells", "sample/{}"): (bake_table(LOBE, side, side, warp), RATIONAL),
+        ("octaves warp, parabolas", None): (bake_table(LOBE, side, side, warp), PARABOLA),
+        ("octaves warp, linear cells", None): (bake_table(LOBE, side, side, warp), LINEAR),
+        ("uniform in u, linear cells", "uniform/{}"): (
+            bake_table(LOBE, side, side, Warp("uniform")), LINEAR,
+        ),
+    }  # fmt: skip
+    shipped, _ = next(iter(tables.values()))
     halves = replace(shipped, texels=as_half(shipped.texels, shipped.domain))
-    tables["octaves warp, curved cells, half floats", None] = halves
+    tables["octaves warp, curved cells, half floats", None] = halves, RATIONAL
     return [
-        _point(name, timed and f"{timed}/{side}/direct_theta", table)
-        for (name, timed), table in tables.items()
+        _point(name, timed and f"{timed}/{side}/direct_theta", table, cell)
+        for (name, timed), (table, cell) in tables.items()
     ]
 
 
-def _point(design: str, timed: str | None, table: Table) -> Point:
+def _point(design: str, timed: str | None, table: Table, cell: Cell) -> Point:
     between = 3 if table.width <= SEARCHED else 0  # so many rows leave no room for errors between them
     with np.errstate(all="ignore"):  # flat cells of half floats
-        errors = measure(table, LOBE, between)
-    size = table.texels.nbytes // (2 if "half" in design else 1)
+        errors = measure(table, LOBE, between, read=cell.read)
+    size = table.texels.nbytes * (1 if "half" in design or cell is not RATIONAL else 2)
     return Point(design, table.width, errors, size, flat_cells(table.texels), timed)
 
 

@@ -14,20 +14,18 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 
-from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.exact import Exact
 from hairlut.integrate import integrate, rows_of_lobe
 from hairlut.invert import invert
 from hairlut.lobes import FITTED, HALF_PI, PRINTED, Array, Lobe
-from hairlut.measure import Errors, flat_cells, inclinations, measure, narrowest_cell
-from hairlut.size import CELL
+from hairlut.measure import BETWEEN, Errors, flat_cells, inclinations, measure, narrowest_cell
+from hairlut.slopes import LARGEST_INNER, fitted
 from hairlut.table import Table, row_angles
 from hairlut.warp import Warp
+from report.cells import CELLS, LINEAR, PARABOLA, RATIONAL, Cell
 
 LOBES = (PRINTED.direct_theta, FITTED.direct_theta, FITTED.direct_phi, FITTED.multiple_theta)
-LINEAR, CURVED = Cell("linear"), CELL
-CELLS = (LINEAR, CURVED)
 EXPONENTS = range(-34, -7)
 LEAST_STEPS = 2.0
 QUANTILE = 2.0**-25
@@ -195,35 +193,44 @@ def _exact(lobe: Lobe, height: int) -> Exact:
 
 
 def tabulate_any(
-    lobe: Lobe, width: int, height: int, warp: Warp, cell: Cell, outermost: float = 0.0
+    lobe: Lobe, width: int, height: int, warp: Warp, outermost: float = 0.0, largest: float = LARGEST_INNER
 ) -> Table:
     """A table with any warp, even with flat cells; the end knots at the quantiles `outermost` and 1 -
-    outermost."""
+    outermost, inner slopes bounded by `largest`."""
     m, upper = warp.knots(width)
-    texels = invert(_rows(lobe, height), np.maximum(m, outermost), upper).astype(np.float32)
+    middle = (m[0] + m[1]) / 2
+    every = np.append(np.maximum(m, outermost), [middle, middle]), np.append(upper, [False, True])
+    quantiles = invert(_rows(lobe, height), *every)
+    x, h = quantiles[:, :-2], warp.widths(width)
+    theta_r = row_angles(lobe.theta_r_range, height)[:, None]
+    log_mass = _rows(lobe, height).log_mass
+    density = np.exp(lobe.log_density(np.clip(x, *lobe.domain), theta_r) - log_mass[:, None])
+    with np.errstate(all="ignore"):  # flat cells
+        slopes = fitted(x, h, density, (quantiles[:, -2], quantiles[:, -1]), largest)
     return Table(
         lobe.model, lobe.name, lobe.angle, lobe.azimuth, lobe.domain, lobe.theta_r_range, lobe.formula,
-        warp, cell, texels, _rows(lobe, height).log_mass,
+        warp, x.astype(np.float32), slopes.astype(np.float32), log_mass,
     )  # fmt: skip
 
 
-def result(name: str, table: Table, lobe: Lobe, quantiles: bool = True) -> Result:
+def result(name: str, table: Table, lobe: Lobe, cell: Cell = RATIONAL, quantiles: bool = True) -> Result:
     with np.errstate(all="ignore"):  # candidates may divide by zero
-        errors = measure(table, lobe, quantiles=quantiles, exact=_exact(lobe, table.height))
+        exact = _exact(lobe, table.height)
+        errors = measure(table, lobe, quantiles=quantiles, exact=exact, read=cell.read)
     label = f"{lobe.model}/{lobe.name}"
     flat, narrowest = flat_cells(table.texels), narrowest_cell(table.texels)
-    return Result(name, table.cell.name, label, table.warp.e, errors, flat, narrowest)
+    return Result(name, cell.name, label, table.warp.e, errors, flat, narrowest)
 
 
 def best_of(
-    family: Callable[[float], Warp], lobe: Lobe, width: int, height: int, cell: Cell
+    family: Callable[[float], Warp], lobe: Lobe, width: int, height: int, cell: Cell = RATIONAL
 ) -> tuple[Warp, float]:
     """(warp, e) of the family with the least V, among those whose cells span LEAST_STEPS steps of a float."""
     trials = []
     for exponent in EXPONENTS:
-        table = tabulate_any(lobe, width, height, family(2.0**exponent), cell)
+        table = tabulate_any(lobe, width, height, family(2.0**exponent))
         if narrowest_cell(table.texels) >= LEAST_STEPS:
-            errors = measure(table, lobe, quantiles=False, exact=_exact(lobe, height))
+            errors = measure(table, lobe, quantiles=False, exact=_exact(lobe, height), read=cell.read)
             trials.append((errors.relative_variance, 2.0**exponent))
     if not trials:
         raise HairlutError(f"{lobe.model}/{lobe.name}: no e leaves every cell {LEAST_STEPS:g} steps wide")
@@ -236,12 +243,12 @@ def warps(width: int, height: int) -> Iterator[Result]:
     for name, warp in FIXED.items():
         for cell in CELLS:
             for lobe in LOBES:
-                yield result(name, tabulate_any(lobe, width, height, warp, cell), lobe)
+                yield result(name, tabulate_any(lobe, width, height, warp), lobe, cell)
     for name, family in FAMILIES.items():
         for cell in CELLS:
             for lobe in LOBES:
                 warp, e = best_of(family, lobe, width, height, cell)
-                yield replace(result(name, tabulate_any(lobe, width, height, warp, cell), lobe), e=e)
+                yield replace(result(name, tabulate_any(lobe, width, height, warp), lobe, cell), e=e)
 
 
 # ---- a warp of its own for each lobe
@@ -271,11 +278,11 @@ def own_warp(lobe: Lobe, width: int, cell: Cell, e: float = 2.0**-17, rounds: in
     """The best smooth monotone warp found for this lobe alone, starting from the fourth root's slope."""
 
     def cost(log_slopes: Array) -> float:
-        table = tabulate_any(lobe, width, BOUND_HEIGHT, spline_warp(log_slopes, e), cell)
+        table = tabulate_any(lobe, width, BOUND_HEIGHT, spline_warp(log_slopes, e))
         narrowest = narrowest_cell(table.texels)
         if not narrowest > 0:
             return 1e3
-        errors = measure(table, lobe, between=0, quantiles=False, exact=_on_rows(lobe))
+        errors = measure(table, lobe, between=0, quantiles=False, exact=_on_rows(lobe), read=cell.read)
         heavy = max(0.0, np.log(errors.largest_weight / WEIGHT_ALLOWED))
         return np.log(errors.relative_variance) + 3 * heavy + 2 * max(0.0, np.log(LEAST_STEPS / narrowest))
 
@@ -300,7 +307,7 @@ def bounds(width: int, height: int) -> Iterator[Result]:
     for cell in CELLS:
         for lobe in LOBES:
             warp = own_warp(lobe, width, cell)
-            yield result("optimised for each lobe", tabulate_any(lobe, width, height, warp, cell), lobe)
+            yield result("optimised for each lobe", tabulate_any(lobe, width, height, warp), lobe, cell)
 
 
 # ---- ends, rows, sizes
@@ -308,21 +315,39 @@ def bounds(width: int, height: int) -> Iterator[Result]:
 
 
 def ends(width: int, height: int) -> Iterator[Result]:
-    """The shipped warp, curved cells: the outermost knots at the domain's ends or at the 2^-25 quantiles."""
+    """The shipped warp and cells: the outermost knots at the domain's ends or at the 2^-25 quantiles."""
     for lobe in LOBES:
-        warp, e = best_of(octaves, lobe, width, height, CURVED)
+        warp, e = best_of(octaves, lobe, width, height)
         for name, outermost in (("domain's end", 0.0), ("2^-25 quantile", QUANTILE)):
-            table = tabulate_any(lobe, width, height, warp, CURVED, outermost)
+            table = tabulate_any(lobe, width, height, warp, outermost)
             yield replace(result(name, table, lobe), e=e)
 
 
-def limits(width: int, height: int) -> Iterator[Result]:
-    """The bound of a curvature, relative to the cell's width: what the end cells' weights and V owe to it."""
-    for lobe in LOBES:
-        warp, e = best_of(octaves, lobe, width, height, CURVED)
-        for limit in (0.5, 0.8, 0.9, 0.95):
-            table = tabulate_any(lobe, width, height, warp, Cell("parabola", limit))
-            yield replace(result(f"limit {limit:g}", table, lobe, quantiles=False), e=e)
+def two_modes(share: float) -> Lobe:
+    """Two Gaussians of sigma 0.1 and a gap of 10 sigma; the first one's share changes with theta_r."""
+
+    def log_density(x, theta_r):
+        first = share + 0.3 * np.sin(theta_r)
+        modes = [
+            np.log(part) - 0.5 * ((x - mean) / 0.1) ** 2 for part, mean in ((first, -0.5), (1 - first, 0.5))
+        ]
+        return np.logaddexp(*modes)
+
+    name = f"two modes, {share:g} in the first"
+    return replace(FITTED.direct_theta, model=name, log_density=log_density, moments=None)
+
+
+def slope_bounds(widths: tuple[int, ...], height: int) -> Iterator[Result]:
+    """The bound of an inner slope, relative to the smaller secant beside it, where a knot may be in a gap."""
+    for lobe in (two_modes(0.5), two_modes(0.6)):
+        for width in widths:
+            for bound in (2.0, 4.0, 8.0, 16.0, 64.0, np.inf):
+                tables = [
+                    tabulate_any(lobe, width, height, octaves(2.0**e), largest=bound) for e in (-16, -12, -8)
+                ]
+                label = f"{'none' if bound == np.inf else f'{bound:g}'}, {width} columns"
+                trials = [result(label, table, lobe, quantiles=False) for table in tables]
+                yield min(trials, key=lambda trial: trial.errors.relative_variance)
 
 
 def sine_rows(t: Array) -> Array:
@@ -348,10 +373,10 @@ def rows(width: int, height: int) -> Iterator[Result]:
     """Even against uneven rows."""
     spacings = {"even": None, "sine: dense at +-90 deg": sine_rows, "tangent: dense at 0": tangent_rows}
     for lobe in LOBES:
-        warp, e = best_of(octaves, lobe, width, height, CURVED)
+        warp, e = best_of(octaves, lobe, width, height)
         for name, spacing in spacings.items():
             moved = moved_rows(lobe, spacing) if spacing else lobe
-            table = tabulate_any(moved, width, height, warp, CURVED)
+            table = tabulate_any(moved, width, height, warp)
             yield replace(result(name, table, moved, quantiles=False), e=e)
 
 
@@ -359,9 +384,9 @@ def half_range(width: int, height: int) -> Iterator[Result]:
     """direct_phi, even in theta_r, with rows over the whole range, or half of them over [0, pi/2]."""
     lobe = FITTED.direct_phi
     half = replace(lobe, theta_r_range=(0.0, HALF_PI))
-    warp, e = best_of(octaves, lobe, width, height, CURVED)
+    warp, e = best_of(octaves, lobe, width, height)
     for name, each, count in (("whole range", lobe, height), ("half range", half, height // 2)):
-        table = tabulate_any(each, width, count, warp, CURVED)
+        table = tabulate_any(each, width, count, warp)
         yield replace(result(f"{name}, {count} rows", table, each, quantiles=False), e=e)
 
 
@@ -415,7 +440,7 @@ def encodings(sides: tuple[int, ...]) -> Iterator[tuple[int, Result]]:
 def _encoded(name: str, encode: Callable, lobe: Lobe, side: int) -> Result:
     trials = []
     for exponent in EXPONENTS[::2]:
-        table = tabulate_any(lobe, side, side, octaves(2.0**exponent), CURVED)
+        table = tabulate_any(lobe, side, side, octaves(2.0**exponent))
         table = replace(table, texels=encode(table.texels, lobe.domain))
         trials.append(result(name, table, lobe, quantiles=False))
     return min(trials, key=lambda trial: (trial.flat, trial.errors.relative_variance))
@@ -426,17 +451,36 @@ def _encoded(name: str, encode: Callable, lobe: Lobe, side: int) -> Result:
 
 
 def sizes(sides: tuple[int, ...]) -> Iterator[tuple[int, Result]]:
-    """V of theta of the direct lobe against the side of a square table: uniform and linear, octaves and
-    linear, three bits and curved, octaves and curved."""
+    """V of theta of the direct lobe against the side of a square table, for warps and cells."""
     designs = (
         ("uniform, linear cells", None, LINEAR),
         ("octaves, linear cells", octaves, LINEAR),
-        ("three bits, curved cells", shifted(3), CURVED),
-        ("octaves, curved cells", octaves, CURVED),
+        ("octaves, parabolas", octaves, PARABOLA),
+        ("octaves, rational quadratics", octaves, RATIONAL),
     )
     for side in sides:
         for name, family, cell in designs:
             for lobe in LOBES[:2]:
                 warp = best_of(family, lobe, side, side, cell)[0] if family else Warp("uniform")
-                table = tabulate_any(lobe, side, side, warp, cell)
-                yield side, result(name, table, lobe, quantiles=False)
+                table = tabulate_any(lobe, side, side, warp)
+                yield side, result(name, table, lobe, cell, quantiles=False)
+
+
+def columns(widths: tuple[int, ...], height: int) -> Iterator[Result]:
+    """V and the largest weight on every lobe, on rows alone, at the e that suits each cell best."""
+    for cell in CELLS:
+        for width in widths:
+            for lobe in LOBES:
+                trials = []
+                for exponent in EXPONENTS:
+                    table = tabulate_any(lobe, width, height, octaves(2.0**exponent))
+                    if narrowest_cell(table.texels) < LEAST_STEPS:
+                        continue
+                    exact = _exact(lobe, height)
+                    at = np.arange(0, len(exact.theta_r), BETWEEN + 1)
+                    with np.errstate(all="ignore"):
+                        errors = measure(table, lobe, quantiles=False, exact=exact, at=at, read=cell.read)
+                    label = f"{width} columns"
+                    place = f"{lobe.model}/{lobe.name}"
+                    trials.append(Result(label, cell.name, place, 2.0**exponent, errors, 0, 0.0))
+                yield min(trials, key=lambda trial: trial.errors.relative_variance)

@@ -5,13 +5,16 @@ from pathlib import Path
 
 import numpy as np
 
-from hairlut import figures, study
-from hairlut.study import Result
+from hairlut import figures
+from report import study
 from report.markdown import table as markdown_table
+from report.study import Result
 
 WIDTH = HEIGHT = 64
 SIDES = (16, 24, 32, 48, 64, 96, 128)
 HALF_SIDES = (16, 32, 64, 128)
+COLUMNS = (16, 32, 64)
+GAP_WIDTHS = (32, 33, 64)
 
 TEXT = f"""# The study behind the design
 
@@ -22,12 +25,16 @@ readings, the azimuth, and theta of the multiple lobe; the readings share the la
 
 ## Decision
 
-1. **Cells are parabolas in u**: x(f) = x0 + f (d + c (1-f)) with u even in f. The density is a cell's width
-   in u over dx/df, whatever the warp: the warp has no derivative to evaluate, and may have kinks. With
-   *linear* cells no warp is good enough: none, those optimised for one lobe alone included, brings theta of
-   the direct lobe below 1.1e-3 (fitted) or 1.4e-3 (printed). With parabolas V is almost a hundred times less
-   on fitted lobes. Curvatures follow from the texels and the knots, once, when a table is loaded: the density
-   at a knot is that of the two cells beside it, blended linearly in x.
+1. **Cells are monotone rational quadratics in u** (Gregory and Delbourgo 1982) through the exact density at
+   every knot, so that a texel is an angle and its slope dx/du, and the density is continuous. Against
+   parabolas whose slopes come from the texels alone, which version 1 had, V at the same number of columns is
+   8 to 20 times less, and the largest weight of the direct lobe is 1.6 instead of 5 to 7: a table of half the
+   columns, and so of the same bytes, has the better of both. Linear cells take hundreds of columns. A sample
+   costs one more division an axis ([speed_error.md](speed_error.md)).
+   **Slopes**: at inner knots 1 / density, but at most 8 times the smaller secant beside the knot, where it
+   lies in a gap between two modes; without a bound V may be 4 and a weight 59 (the table of bounds). At the
+   ends of the domain 1 / density may be 1e80; there the slope is the one that puts the end cell's middle on
+   the true quantile. A search for the slope of least V gives the same V and slightly larger weights.
 2. **Warp: octaves**, folded at u = 1/2, columns uniform in what the bits of m+e make when they are shifted
    right by two, m = min(u, 1-u). It is the cheapest with dense ends, one integer operation, and within 4e-6
    of the V of the best, which takes two square roots. One bit less leaves the tails too coarse (1.3e-3 on
@@ -37,9 +44,8 @@ readings, the azimuth, and theta of the multiple lobe; the readings share the la
    end cells wide in float steps.
 4. **The outermost knot lies on the domain's end**, not at the 2^-25 quantile. Stopping at the quantile
    shortens the tails and loses 1e-7 of the lobe's mass, but a renderer's BSDF is not the lobe: a direction
-   that the table never draws is energy that no weight restores. With curved end cells full support costs
-   up to 6e-6 of V, and the largest weight stays below 7.3. That is why **a curvature may be 0.95 of a cell's
-   width**: the end cells need it, with a bound of 0.8 the largest weight is 13, with 0.5 it is 34.
+   that the table never draws is energy that no weight restores. With curved end cells full support is nearly
+   free.
 5. **Rows are even in theta_r.** Uneven rows help one lobe and harm another: rows dense in the middle take
    theta of the printed direct lobe from 7e-5 to 5e-5 and at least double V everywhere else.
 6. **The azimuth keeps the whole range** of theta_r. Half of it would do, at the same V, and save 3 KB; but
@@ -65,6 +71,18 @@ def summary(results: list[Result]) -> str:
         lines.setdefault((each.candidate, each.cell), {})[each.lobe] = _variance(each)
     return markdown_table(
         WARPS, ((*key, *(found[lobe] for lobe in WARPS[2:])) for key, found in lines.items())
+    )
+
+
+def cells_summary(results: Iterable[Result]) -> str:
+    """One line for each cell and width: V and largest weight of each lobe."""
+    lines: dict[tuple[str, str], dict[str, str]] = {}
+    for each in results:
+        text = f"{_variance(each)}, {_number(each.errors.largest_weight, '.3g')}"
+        lines.setdefault((each.cell, each.candidate), {})[each.lobe] = text
+    return markdown_table(
+        ("cells", "width", *WARPS[2:]),
+        ((*key, *(found[lobe] for lobe in WARPS[2:])) for key, found in lines.items()),
     )
 
 
@@ -125,12 +143,14 @@ def sixteen_bits(results: Iterable[tuple[int, Result]]) -> str:
 
 
 def draw_warps(results: list[Result], path: Path) -> Path:
-    """V of every candidate on every lobe, linear against curved cells."""
+    """V of every candidate on every lobe and with every kind of cell."""
     names = list(dict.fromkeys(each.candidate for each in results if each.errors.relative_variance < 1e6))
     figure, panel = figures.new(size=(9, 5.5))
     colours = figures.BLUE, figures.ORANGE, figures.GREEN, figures.PURPLE
     for lobe, colour in zip(WARPS[2:], colours, strict=True):
-        for cell, marker in (("linear", "o"), ("parabola", "D")):
+        for cell, marker, filled in (
+            ("linear", "o", "white"), ("parabola", "^", "white"), ("rational quadratic", "D", colour),
+        ):  # fmt: skip
             mine = [
                 each
                 for each in results
@@ -139,8 +159,7 @@ def draw_warps(results: list[Result], path: Path) -> Path:
             panel.plot(
                 [each.errors.relative_variance for each in mine],
                 [names.index(each.candidate) for each in mine],
-                marker, color=colour, mfc=colour if cell == "parabola" else "white", ms=7,
-                label=f"{lobe}, {'curved' if cell == 'parabola' else 'linear'} cells",
+                marker, color=colour, mfc=filled, ms=7, label=f"{lobe}, {cell}",
             )  # fmt: skip
     panel.set(
         xscale="log",
@@ -160,8 +179,8 @@ def draw_sizes(results: list[tuple[int, Result]], path: Path) -> Path:
     looks = {
         "uniform, linear cells": (figures.ORANGE, "s-"),
         "octaves, linear cells": (figures.GREEN, "^-"),
-        "three bits, curved cells": (figures.PURPLE, "x--"),
-        "octaves, curved cells": (figures.BLUE, "o-"),
+        "octaves, parabolas": (figures.PURPLE, "x--"),
+        "octaves, rational quadratics": (figures.BLUE, "o-"),
     }
     for panel, lobe in zip(panels, ("printed/direct_theta", "fitted/direct_theta"), strict=True):
         for name, (colour, line) in looks.items():
@@ -194,12 +213,14 @@ def write(out: Path, step=lambda text: None) -> None:
         TEXT,
         "## Warps and cells: V\n",
         summary(warps),
-        "![V of every warp with linear and with curved cells](study_warps.svg)\n",
+        "![V of every warp and cell](study_warps.svg)\n",
         "![V against the size of the table](study_sizes.svg)\n",
+        f"## Cells: V and the largest weight, on {HEIGHT} rows alone, each at the e that suits it best\n",
+        cells_summary(study.columns(COLUMNS, HEIGHT)),
         "## The ends\n",
         short(study.ends(WIDTH, HEIGHT)),
-        "## The bound of a curvature\n",
-        short(study.limits(WIDTH, HEIGHT)),
+        "## The bound of an inner slope, where two modes have a gap between them\n",
+        short(study.slope_bounds(GAP_WIDTHS, HEIGHT)),
         "## Rows\n",
         short(study.rows(WIDTH, HEIGHT)),
         "## The azimuth's range\n",

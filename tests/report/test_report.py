@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from hairlut import exr
-from hairlut.cell import Cell
 from hairlut.errors import HairlutError
 from hairlut.lobes import FITTED, MODELS
 from hairlut.warp import Warp
@@ -16,7 +15,7 @@ from report import bake_speed, markdown, study, timing
 
 matplotlib = pytest.importorskip("matplotlib", reason="figures need pip install 'precompute[report]'")
 
-CURVED = Cell("parabola", 0.95)
+CURVED = study.RATIONAL
 
 
 def shipped_tables(luts):
@@ -116,10 +115,10 @@ def test_candidate_warps_invert(family, e):
 def test_curved_cells_beat_the_best_warp_with_linear_ones():
     """The decision of the study, on the lobe that decides: one Gaussian in theta, at 64x64."""
     lobe = FITTED.direct_theta
-    curved = study.best_of(study.octaves, lobe, 64, 64, CURVED)[0]
+    curved = study.best_of(study.octaves, lobe, 64, 64)[0]
     own = study.own_warp(lobe, 64, study.LINEAR, rounds=1)
     v_curved, v_linear = (
-        study.result("", study.tabulate_any(lobe, 64, 64, warp, cell), lobe, False).errors.relative_variance
+        study.result("", study.tabulate_any(lobe, 64, 64, warp), lobe, cell, False).errors.relative_variance
         for warp, cell in ((curved, CURVED), (own, study.LINEAR))
     )
     assert v_curved < 5e-5
@@ -138,8 +137,8 @@ def test_the_domains_end_costs_little_and_loses_nothing():
 
 def test_uniform_is_the_worst_and_halves_go_flat():
     lobe = FITTED.direct_theta
-    table = study.tabulate_any(lobe, 64, 64, Warp("uniform"), study.LINEAR)
-    assert study.result("", table, lobe, False).errors.relative_variance > 0.1
-    table = study.tabulate_any(lobe, 64, 64, study.octaves(2.0**-18), CURVED)
+    table = study.tabulate_any(lobe, 64, 64, Warp("uniform"))
+    assert study.result("", table, lobe, study.LINEAR, False).errors.relative_variance > 0.1
+    table = study.tabulate_any(lobe, 64, 64, study.octaves(2.0**-18))
     rounded = study.as_half(table.texels, lobe.domain)
     assert (np.diff(rounded, axis=1) <= 0).any()

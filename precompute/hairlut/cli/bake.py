@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from .. import batch_bake, exr, manifest, modelfile, size
-from ..cell import Cell
 from ..errors import HairlutError
 from ..lobecheck import find_jump
 from ..lobes import MODELS, Lobe, Model
 from ..measure import measure
+from ..model import assemble
 from ..table import bake_table
 from ..warp import Warp
 from . import CHECK_FAILED, OK
@@ -24,7 +24,7 @@ EXAMPLES = """examples:
   hairlut bake                                      both models into luts/, as small as V <= 1e-4 allows
   hairlut bake --model fitted --tolerance 1e-3 --out small
   hairlut bake --size 64x64 --out square
-  hairlut bake --size 64x64 --warp uniform --cell linear --out baseline
+  hairlut bake --size 64x64 --warp uniform --out baseline
   hairlut bake --model my_hair.py                   lobes of your own (see the module hairlut.modelfile)
   hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/, or a family from hairlut fit
   parallel hairlut bake --out baked --model ::: hairs/*.py      the same on a queue's machines"""
@@ -75,12 +75,6 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         help="with --size, where the columns lie on the u axis: 'octaves e=NUMBER' or 'uniform' (default: "
         "octaves, e as measured to be best)",
     )
-    parser.add_argument(
-        "--cell",
-        default=str(size.CELL),
-        metavar="CELL",
-        help="curve inside a cell: 'parabola limit=NUMBER' or 'linear' (default: %(default)s)",
-    )
     return parser
 
 
@@ -96,7 +90,6 @@ def run(args: argparse.Namespace) -> int:
     if args.warp and not args.size:
         raise HairlutError("--warp: a tolerance chooses the warp itself: give --size too")
     args.warp = args.warp and Warp.parse(args.warp)
-    args.cell = Cell.parse(args.cell)
     names = list(dict.fromkeys(args.model or MODELS))
     if any(Path(name).is_dir() for name in names):
         return run_many(names, args)
@@ -109,11 +102,10 @@ def run(args: argparse.Namespace) -> int:
     choices = bake_all([lobe for model in models.values() for lobe in model.lobes], args)
     if choices is None:
         return CHECK_FAILED
-    for choice in choices:  # only when all of them have come out
-        write(args.out, choice)
-    for name, model in models.items():
+    for name, model in models.items():  # only when all of them have come out
+        textures = write(args.out, model, [choice for choice in choices if choice.table.model == model.name])
         if name in sources:
-            record(args, sources[name], model)
+            record(args, sources[name], textures)
     return OK
 
 
@@ -125,13 +117,11 @@ def is_current(source: Path, args: argparse.Namespace) -> bool:
 def options(args: argparse.Namespace) -> dict:
     """What a model file's textures depend on besides the file."""
     shape = {"size": args.size} if args.size else {"tolerance": args.tolerance, "max_size": args.max_size}
-    return {key: str(value) for key, value in {**shape, "warp": args.warp, "cell": args.cell}.items()}
+    return {key: str(value) for key, value in {**shape, "warp": args.warp}.items()}
 
 
-def record(args: argparse.Namespace, source: Path, model: Model) -> None:
-    folder = args.out / model.name
-    textures = [folder / f"{lobe.name}.exr" for lobe in model.lobes]
-    manifest.record(folder, modelfile.inputs(source), textures, options(args))
+def record(args: argparse.Namespace, source: Path, textures: list[Path]) -> None:
+    manifest.record(args.out / source.stem, modelfile.inputs(source), textures, options(args))
 
 
 def run_many(names: list[str], args: argparse.Namespace) -> int:
@@ -171,7 +161,7 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
 def passed_on(args: argparse.Namespace) -> list[str]:
     """The options of this command for the command that bakes one model."""
     shape = ["--size", "x".join(map(str, args.size))] if args.size else ["--tolerance", repr(args.tolerance)]
-    rest = ["--max-size", str(args.max_size), "--cell", str(args.cell), "--out", str(args.out)]
+    rest = ["--max-size", str(args.max_size), "--out", str(args.out)]
     warp = ["--warp", str(args.warp)] if args.warp else []
     return [*shape, *rest, *warp, *(["--force"] if args.force else [])]
 
@@ -207,29 +197,37 @@ def _jump(lobe: Lobe) -> str:
 
 def bake_one(lobe: Lobe, args: argparse.Namespace) -> size.Choice:
     """A table of the size and warp asked for, or chosen by measurement where none was."""
-    choice = _baked(lobe, args.size, args.warp, args.cell, args.tolerance, args.max_size)
+    choice = _baked(lobe, args.size, args.warp, args.tolerance, args.max_size)
     return replace(choice, table=replace(choice.table, model=lobe.model))
 
 
 @lru_cache(maxsize=modelfile.KEPT)
 def _baked(
-    lobe: Lobe, shape: tuple[int, int] | None, warp: Warp | None, cell: Cell, tolerance: float, limit: int
+    lobe: Lobe, shape: tuple[int, int] | None, warp: Warp | None, tolerance: float, limit: int
 ) -> size.Choice:
     """The same choice for equal lobes, of whatever model."""
     if warp:
-        table = bake_table(lobe, *shape, warp, cell)
+        table = bake_table(lobe, *shape, warp)
         return size.Choice(table, measure(table, lobe), "size and warp as asked")
     if shape:
-        return size.table_of_size(lobe, *shape, cell)
-    return size.smallest_table(lobe, tolerance, limit, cell)
+        return size.table_of_size(lobe, *shape)
+    return size.smallest_table(lobe, tolerance, limit)
 
 
-def write(out: Path, choice: size.Choice) -> None:
-    """Writes a table to its place below out, and says what was chosen and why."""
+def write(out: Path, model: Model, choices: list[size.Choice]) -> list[Path]:
+    """Writes a model's files below out, and says what was chosen and why; their paths."""
+    tables = {choice.table.name: choice.table for choice in choices}
+    errors = {choice.table.name: choice.errors.summary() for choice in choices}
+    paths = exr.write_model(out / model.name, assemble(model, tables, errors))
+    for choice in choices:
+        print(f"{out / model.name / choice.table.name}.exr  {describe(choice)}")
+    print(f"{paths[-1]}  {', '.join(model.names)}")
+    return paths
+
+
+def describe(choice: size.Choice) -> str:
     table, errors = choice.table, choice.errors
-    path = out / table.model / f"{table.name}.exr"
-    exr.write(path, table, errors.summary())
-    print(
-        f"{path}  {table.width}x{table.height}, {table.texels.nbytes} bytes, {table.warp}: "
+    return (
+        f"{table.width}x{table.height}, {table.nbytes} bytes, {table.warp}: "
         f"V {errors.relative_variance:.2e}, largest weight {errors.largest_weight:.2f} ({choice.reason})"
     )

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""OpenEXR images of floats with text in their headers: written whole or not at all, and read with suspicion.
+
+What is common to tables (exr.py) and mixtures (mixturefile.py). Nothing is decoded before the header has been
+checked: one part of scanlines, a harmless size and compression, and exactly the channels that are expected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+
+from . import __version__
+from .digest import digest
+from .errors import HairlutError
+from .files import replace_whole
+from .lobes import Array
+
+FORMAT = 2
+UNIT = "rad"
+PREFIX = "hairlut."
+ERROR_PREFIX = "hairlut.error."
+REBAKE = "bake it again with 'hairlut bake'"
+MAX_SIDE = 4096
+COMPRESSIONS = ("NO_COMPRESSION", "RLE_COMPRESSION", "ZIPS_COMPRESSION", "ZIP_COMPRESSION")
+
+Attributes = dict[str, str | int]
+
+
+def write_image(
+    path: Path, attributes: Attributes, channels: Mapping[str, Array], errors: Mapping[str, float]
+) -> None:
+    """Writes float channels (H, W) by name; an existing file is replaced in one step.
+
+    errors: measured errors by name ("relative_variance", ...), written as hairlut.error.<name>.
+    """
+    channels = {name: np.ascontiguousarray(values, np.float32) for name, values in channels.items()}
+    header = {
+        "compression": OpenEXR.ZIP_COMPRESSION,
+        "type": OpenEXR.scanlineimage,
+        **attributes,
+        "hairlut.digest": digest(list(channels.values())),
+        **{ERROR_PREFIX + name: f"{value:.3e}" for name, value in errors.items()},
+    }
+
+    def write(temporary: Path) -> None:
+        with OpenEXR.File(header, channels) as file:
+            file.write(str(temporary))
+
+    replace_whole(path, write)
+
+
+def common_attributes(model: str, name: str) -> Attributes:
+    """What the headers of tables and mixtures begin with."""
+    return {
+        "colorInteropID": "data",
+        "hairlut.format": FORMAT,
+        "hairlut.generator": f"hairlut {__version__}",
+        "hairlut.model": model,
+        "hairlut.table": name,
+        "hairlut.unit": UNIT,
+    }
+
+
+def numbers_text(values) -> str:
+    """Numbers as text, exact in double precision: an OpenEXR float attribute would have 32 bits."""
+    return " ".join(repr(float(x)) for x in values)
+
+
+def read_image(path: Path, expected: Callable[[Header], Sequence[str]]) -> tuple[Header, list[Array]]:
+    """(header, channels in the order that expected(header) names them), each (H, W) float32.
+
+    HairlutError, which names file, attribute and remedy, if the file is no such image.
+    """
+    header = Header(path, dict(_open(path, header_only=True).header()))
+    _refuse_other_formats(header)
+    names = expected(header)
+    _check_image(header, names)
+    channels = _open(path, header_only=False).channels()
+    return header, [_floats(path, name, channels[name].pixels) for name in names]
+
+
+def _floats(path: Path, name: str, pixels: Array) -> Array:
+    if pixels.dtype != np.float32:
+        raise HairlutError(f"{path}: channel {name} is {pixels.dtype}, expected 32-bit float: {REBAKE}")
+    return np.array(pixels)
+
+
+def _open(path: Path, header_only: bool) -> OpenEXR.File:
+    if path.is_dir():
+        raise HairlutError(f"{path}: is a directory: name a file in it")
+    if not path.is_file():
+        raise HairlutError(f"{path}: no such file: {REBAKE}")
+    try:
+        file = OpenEXR.File(str(path), separate_channels=True, header_only=header_only)
+    except Exception as error:  # the binding raises several unrelated types
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        raise HairlutError(f"{path}: not a complete OpenEXR image ({reason}): {REBAKE}") from error
+    if len(file.parts) != 1:
+        raise HairlutError(f"{path}: has {len(file.parts)} parts, expected one: {REBAKE}")
+    return file
+
+
+class Header:
+    """Attributes of one file, each checked when it is read."""
+
+    def __init__(self, path: Path, attributes: dict) -> None:
+        self.path, self.attributes = path, attributes
+
+    def failure(self, name: str, found: str, remedy: str = REBAKE) -> HairlutError:
+        return HairlutError(f"{self.path}: attribute {PREFIX}{name} {found}: {remedy}")
+
+    def text(self, name: str, default: str | None = None) -> str:
+        value = self.attributes.get(PREFIX + name, default)
+        if value is None:
+            raise self.failure(name, "is missing")
+        if not isinstance(value, str):
+            raise self.failure(name, f"is {value!r}, expected text")
+        return value
+
+    def one_of(self, name: str, expected: Sequence[str], remedy: str = REBAKE) -> str:
+        value = self.text(name)
+        if value not in expected:
+            raise self.failure(name, f"is {value!r}, expected {' or '.join(map(repr, expected))}", remedy)
+        return value
+
+    def numbers(self, name: str, count: int | None = None) -> Array:
+        """As many finite numbers, or at least one if count is None."""
+        text = self.text(name)
+        try:
+            values = np.array([float(word) for word in text.split()])
+        except ValueError:
+            values = np.array([np.nan])
+        if len(values) != (count or max(1, len(values))) or not np.isfinite(values).all():
+            raise self.failure(name, f"is {text[:60]!r}, expected {count or 'one or more'} finite numbers")
+        return values
+
+    def interval(self, name: str) -> tuple[float, float]:
+        low, high = self.numbers(name, 2)
+        if not low < high:
+            raise self.failure(name, f"is {low!r} {high!r}, expected two increasing numbers")
+        return float(low), float(high)
+
+    def parsed(self, name: str, parse: Callable):
+        text = self.text(name)
+        try:
+            return parse(text)
+        except HairlutError as error:
+            raise self.failure(name, f"is {text!r} ({error})") from error
+
+    def errors(self) -> dict[str, float]:
+        """The measured errors, as many as the file has."""
+        names = sorted(name for name in self.attributes if name.startswith(ERROR_PREFIX))
+        return {name[len(ERROR_PREFIX) :]: float(self.numbers(name[len(PREFIX) :], 1)[0]) for name in names}
+
+    def check_digest(self, channels: Sequence[Array]) -> str:
+        """The digest of the channels; HairlutError if the file was written with another."""
+        found, named = digest(channels), self.text("digest")
+        if found != named:
+            reason = f"is {named!r}, but the texels have {found!r}: they were changed after they were written"
+            raise self.failure("digest", reason)
+        return found
+
+    @property
+    def format(self) -> int:
+        return self.attributes[PREFIX + "format"]
+
+
+def _refuse_other_formats(header: Header) -> None:
+    version = header.attributes.get(PREFIX + "format")
+    if version is None:
+        raise header.failure("format", "is missing: the file is no hairlut table")
+    if not isinstance(version, int) or version < 1:
+        raise header.failure("format", f"is {version!r}, expected 1 to {FORMAT}")
+    if version > FORMAT:
+        reason = f"is {version}, expected {FORMAT} or less"
+        raise header.failure("format", reason, "use a newer hairlut to read this file")
+
+
+def _check_image(header: Header, expected: Sequence[str]) -> None:
+    path, attributes = header.path, header.attributes
+    if attributes["type"] != OpenEXR.scanlineimage:
+        raise HairlutError(f"{path}: is {_last(attributes['type'])}, expected scanlines: {REBAKE}")
+    if _last(attributes["compression"]) not in COMPRESSIONS:
+        allowed = ", ".join(name.removesuffix("_COMPRESSION") for name in COMPRESSIONS)
+        found = _last(attributes["compression"])
+        raise HairlutError(f"{path}: compression is {found}, expected one of {allowed}: {REBAKE}")
+    channels = {channel.name: channel for channel in attributes["channels"]}
+    if set(channels) != set(expected):
+        raise HairlutError(
+            f"{path}: channels are {', '.join(sorted(channels)) or 'none'}, "
+            f"expected {', '.join(expected)}: {REBAKE}"
+        )
+    for name, channel in channels.items():
+        if (channel.xSampling, channel.ySampling) != (1, 1):
+            sampling = f"{channel.xSampling}x{channel.ySampling}"
+            raise HairlutError(f"{path}: channel {name} is sampled {sampling}, expected 1x1: {REBAKE}")
+    (left, top), (right, bottom) = corners = [
+        tuple(int(x) for x in corner) for corner in attributes["dataWindow"]
+    ]
+    shown = [tuple(int(x) for x in corner) for corner in attributes["displayWindow"]]
+    for name, window in (("dataWindow", corners), ("displayWindow", shown)):
+        if (left, top) != (0, 0) or window != corners:
+            raise HairlutError(
+                f"{path}: {name} is {window}, expected it to start at 0 0 and span the image: {REBAKE}"
+            )
+    if max(right, bottom) >= MAX_SIDE:
+        raise HairlutError(
+            f"{path}: size is {right + 1}x{bottom + 1}, expected sides of at most {MAX_SIDE}: {REBAKE}"
+        )
+
+
+def _last(value: object) -> str:
+    """The name of a value of one of the binding's enumerations."""
+    return str(value).rpartition(".")[2]

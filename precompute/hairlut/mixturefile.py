@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""mixture.exr: the names of a model's lobes, their tables, shares and turns (luts/FORMAT.md)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .errors import HairlutError
+from .exrfile import (
+    REBAKE,
+    UNIT,
+    Attributes,
+    Header,
+    common_attributes,
+    numbers_text,
+    read_image,
+    write_image,
+)
+from .lobes import LOBE_NAME, MAX_LOBES, space
+from .mixture import Mixture
+from .model import BakedLobe, BakedModel
+
+FILE = "mixture.exr"
+AXES = "theta_r offset"
+LOBE_TEXT = r"(?P<theta>\w+) (?P<theta_crc>[0-9a-f]{8})(?: (?P<phi>\w+) (?P<phi_crc>[0-9a-f]{8}))?"
+LOBE_FORM = "'NAME_theta DIGEST' or 'NAME_theta DIGEST NAME_phi DIGEST', with 8 hexadecimal digits each"
+
+
+@dataclass(frozen=True)
+class MixtureFile:
+    """What mixture.exr says.
+
+    tables    names of each lobe's tables: theta, and phi or None
+    digests   digest of each table, as Table.digest
+    """
+
+    model: str
+    mixture: Mixture
+    tables: dict[str, tuple[str, str | None]]
+    digests: dict[str, str]
+    errors: dict[str, float]
+
+
+def write(path: Path, model: BakedModel) -> None:
+    """Writes mixture.exr, a row for each theta_r and a column for each offset."""
+    mixture = model.mixture
+    channels = {}
+    for k, name in enumerate(mixture.lobes):
+        channels |= {f"{name}.share": mixture.share[k], f"{name}.turn": mixture.turn[k]}
+    attributes: Attributes = {
+        **common_attributes(model.name, "mixture"),
+        "hairlut.lobes": " ".join(mixture.lobes),
+        **{f"hairlut.lobe.{lobe.name}": _tables_text(lobe) for lobe in model.lobes},
+        "hairlut.axes": AXES,
+        "hairlut.axis.theta_r": numbers_text(mixture.theta_r),
+        "hairlut.axis.offset": numbers_text(mixture.offset),
+        "hairlut.mirrored": str(int(mixture.mirrored)),
+    }
+    write_image(path, attributes, channels, model.errors.get("mixture", {}))
+
+
+def _tables_text(lobe: BakedLobe) -> str:
+    return " ".join(f"{table.name} {table.digest.removeprefix('crc32 ')}" for table in lobe.tables)
+
+
+def read(path: Path) -> MixtureFile:
+    """HairlutError, which names file, attribute and remedy, if the file is unfit."""
+    header, channels = read_image(path, lambda header: _channel_names(_lobes(header)))
+    if header.format < 2:
+        raise header.failure("format", f"is {header.format}, expected 2")
+    header.one_of("table", ("mixture",))
+    header.one_of("unit", (UNIT,))
+    header.one_of("axes", (AXES,), "this reader knows the axes theta_r and offset")
+    lobes = _lobes(header)
+    axes = [header.numbers(f"axis.{name}") for name in AXES.split()]
+    _check_size(path, axes, channels[0].shape)
+    mirrored = header.one_of("mirrored", ("0", "1")) == "1"
+    header.check_digest(channels)
+    share, turn = (np.stack(channels[first::2]).astype(float) for first in (0, 1))
+    try:
+        mixture = Mixture(lobes, *axes, share, turn, mirrored)
+    except HairlutError as error:
+        raise HairlutError(f"{path}: {error}: {REBAKE}") from error
+    tables, digests = _tables(header, lobes)
+    return MixtureFile(header.text("model"), mixture, tables, digests, header.errors())
+
+
+def _lobes(header: Header) -> tuple[str, ...]:
+    text = header.text("lobes")
+    lobes = tuple(text.split(" "))
+    if (
+        len(lobes) > MAX_LOBES
+        or len(set(lobes)) < len(lobes)
+        or not all(re.fullmatch(LOBE_NAME, n) for n in lobes)
+    ):
+        raise header.failure("lobes", f"is {text[:80]!r}, expected 1 to 16 different names, a space between")
+    return lobes
+
+
+def _channel_names(lobes: tuple[str, ...]) -> list[str]:
+    return [f"{name}.{what}" for name in lobes for what in ("share", "turn")]
+
+
+def _check_size(path: Path, axes: list[np.ndarray], shape: tuple[int, int]) -> None:
+    expected = tuple(len(axis) for axis in axes)
+    if shape != expected:
+        raise HairlutError(
+            f"{path}: has {shape[0]} rows and {shape[1]} columns, expected {expected[0]} and {expected[1]}, "
+            f"the numbers of theta_r and of offsets in its header: {REBAKE}"
+        )
+
+
+def _tables(
+    header: Header, lobes: tuple[str, ...]
+) -> tuple[dict[str, tuple[str, str | None]], dict[str, str]]:
+    """(names of each lobe's tables, digest of each table)"""
+    tables, digests = {}, {}
+    for lobe in lobes:
+        attribute = f"lobe.{lobe}"
+        text = header.text(attribute)
+        match = re.fullmatch(LOBE_TEXT, text, re.ASCII)
+        if not match or not _are_kinds(match["theta"], match["phi"]):
+            raise header.failure(attribute, f"is {text[:120]!r}, expected {LOBE_FORM}")
+        tables[lobe] = match["theta"], match["phi"]
+        for kind in ("theta", "phi"):
+            name, digest = match[kind], f"crc32 {match[f'{kind}_crc']}"
+            if name and digests.setdefault(name, digest) != digest:
+                raise header.failure(attribute, f"gives {name} another digest than the lobe before it")
+    return tables, digests
+
+
+def _are_kinds(theta: str, phi: str | None) -> bool:
+    try:
+        return space(theta)["angle"] == "theta_i" and (phi is None or space(phi)["angle"] == "phi")
+    except HairlutError:
+        return False

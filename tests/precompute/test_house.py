@@ -1,0 +1,72 @@
+"""The house stays in order: data flows one way, and what an engine copies holds nothing else."""
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from precompute.conftest import LUTS, ROOT
+
+PACKAGE = ROOT / "precompute" / "hairlut"
+
+
+def imports(source: str, module: str, is_package: bool, top_only: bool = True) -> set[str]:
+    """The modules of hairlut that a module's source imports: when it is loaded, or at all."""
+    tree = ast.parse(source)
+    nodes = list(_when_loaded(tree)) if top_only else list(ast.walk(tree))
+    found = set()
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = module.split(".")[: len(module.split(".")) + is_package - node.level] if node.level else []
+            name = ".".join([*base, *([node.module] if node.module else [])])
+            found |= {name, *(f"{name}.{alias.name}" for alias in node.names)}
+    return {name for name in found if name.split(".")[0] == "hairlut"}
+
+
+def _when_loaded(node: ast.AST):
+    """Every statement outside functions; those under `if TYPE_CHECKING` count."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, (ast.FunctionDef, ast.Lambda)):
+            yield child
+            yield from _when_loaded(child)
+
+
+def graph(folder: Path) -> dict[str, set[str]]:
+    files = {
+        ".".join(("hairlut", *path.relative_to(folder).with_suffix("").parts)).removesuffix(".__init__"): path
+        for path in folder.rglob("*.py")
+    }
+    edges = {
+        name: imports(path.read_text(), name, path.name == "__init__.py") for name, path in files.items()
+    }
+    # a package is loaded before its modules; that alone is no circle
+    return {
+        name: {to for to in found if to in files and not name.startswith(f"{to}.")}
+        for name, found in edges.items()
+    }
+
+
+def test_no_module_imports_itself_through_others():
+    TopologicalSorter(graph(PACKAGE)).prepare()
+
+
+def test_a_circle_is_noticed(tmp_path):
+    (tmp_path / "a.py").write_text(
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .b import B\n"
+    )
+    (tmp_path / "b.py").write_text("from . import a\n")
+    with pytest.raises(CycleError):
+        TopologicalSorter(graph(tmp_path)).prepare()
+
+
+def test_the_plugin_knows_no_python_package():
+    for path in (ROOT / "runtime" / "mitsuba").rglob("*.py"):
+        assert not imports(path.read_text(), path.stem, False, top_only=False), path
+
+
+def test_the_textures_folder_holds_nothing_else():
+    files = {path.name if path.suffix != ".exr" else ".exr" for path in LUTS.rglob("*") if path.is_file()}
+    assert files <= {".exr", "manifest.json", "FORMAT.md"}

@@ -12,6 +12,8 @@ from functools import partial
 
 import numpy as np
 
+from .errors import HairlutError
+
 HALF_PI = np.pi / 2
 DEGREE = np.pi / 180
 

@@ -27,6 +27,7 @@ EXAMPLES = """examples:
   hairlut bake --size 64x64 --warp uniform --out baseline
   hairlut bake --model my_hair.py                   lobes of your own (see the module hairlut.modelfile)
   hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/, or a family from hairlut fit
+  hairlut bake --model theirs.py --timeout 60       in a process of its own, ended if it takes longer
   parallel hairlut bake --out baked --model ::: hairs/*.py      the same on a queue's machines"""
 
 
@@ -47,6 +48,13 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--jobs", type=int, default=os.cpu_count(), metavar="N", help="models of a directory baked at a time"
+    )
+    parser.add_argument(
+        "--timeout",
+        type=float,
+        metavar="SECONDS",
+        help="seconds after which a model file fails, its process ended (default: "
+        f"{batch_bake.TIMEOUT:g} in a directory; a file alone has no limit)",
     )
     parser.add_argument("--force", action="store_true", help="bake model files that are up to date again")
     how_large = parser.add_mutually_exclusive_group()
@@ -91,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
         raise HairlutError("--warp: a tolerance chooses the warp itself: give --size too")
     args.warp = args.warp and Warp.parse(args.warp)
     names = list(dict.fromkeys(args.model or MODELS))
-    if any(Path(name).is_dir() for name in names):
+    if args.timeout is not None or any(Path(name).is_dir() for name in names):
         return run_many(names, args)
     sources = {name: Path(name) for name in names if name not in MODELS}
     for name, source in list(sources.items()):
@@ -131,6 +139,9 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
 
     if args.jobs < 1:
         raise HairlutError(f"--jobs {args.jobs}: expected 1 or more")
+    timeout = batch_bake.TIMEOUT if args.timeout is None else args.timeout
+    if not timeout > 0:
+        raise HairlutError(f"--timeout {timeout:g}: expected seconds above 0")
     paths = [Path(name) for name in names]
     sources, family = batch_bake.model_files(paths), batch_bake.family_file(paths)
     console = Console(stderr=True)
@@ -144,7 +155,7 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
                 print(f"  {outcome.text}", file=sys.stderr, flush=True)
 
         outcomes = batch_bake.bake_many(
-            sources, passed_on(args), args.jobs, lambda source: is_current(source, args), report
+            sources, passed_on(args), args.jobs, lambda source: is_current(source, args), timeout, report
         )
     counts = {status: sum(o.status == status for o in outcomes) for status in batch_bake.STATUSES}
     print(f"{len(outcomes)} models: " + ", ".join(f"{count} {status}" for status, count in counts.items()))

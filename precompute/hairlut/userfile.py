@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs a user's Python file, and the functions it defines, so that whatever they do ends in one clear line.
+
+The code may import the files beside it. It has no standard input, so it can wait for nobody, and what it
+prints goes to standard error, so it cannot mix with the output of a command. It cannot end the command
+either: sys.exit() is an error like any other.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stdout, suppress
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from traceback import extract_tb
+from types import ModuleType
+
+from .errors import HairlutError
+from .text import decode, read_bytes
+
+EXPECTED = "a Python file"
+
+
+@dataclass(frozen=True)
+class UserFile:
+    """What a file defined, and the files beside it that it imported."""
+
+    module: ModuleType
+    neighbours: tuple[Path, ...]
+
+
+def run_file(path: Path) -> UserFile:
+    """Runs the file; HairlutError naming the file, the line and the reason where that fails."""
+    data = read_bytes(path, EXPECTED)
+    if b"\0" in data:
+        decode(path, data, EXPECTED)
+    module = ModuleType(path.stem)
+    module.__file__ = str(path)
+    before = set(sys.modules)
+    with user_code(path):
+        try:
+            exec(compile(data, str(path), "exec"), module.__dict__)
+        finally:
+            neighbours = _forget_neighbours(path.resolve().parent, before)
+    return UserFile(module, neighbours)
+
+
+def guarded(function: Callable, path: Path) -> Callable:
+    """A function of the file whose failures are HairlutErrors, as those of run_file."""
+
+    @wraps(function)
+    def call(*arguments):
+        with _named(path), redirect_stdout(sys.stderr):
+            return function(*arguments)
+
+    return call
+
+
+@contextmanager
+def user_code(path: Path) -> Iterator[None]:
+    """Lets the code of the file at path run within."""
+    folder = str(path.resolve().parent)
+    kept = sys.stdin, sys.dont_write_bytecode
+    sys.path.insert(0, folder)
+    sys.stdin, sys.dont_write_bytecode = _NoInput(), True
+    try:
+        with _named(path), _null_descriptor(), redirect_stdout(sys.stderr):
+            yield
+    finally:
+        sys.stdin, sys.dont_write_bytecode = kept
+        with suppress(ValueError):
+            sys.path.remove(folder)
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Turns whatever the user's code does wrong into a HairlutError naming the file and the line."""
+    try:
+        yield
+    except HairlutError as error:
+        text = str(error)
+        raise HairlutError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise HairlutError(f"{path}{line_of(error, path)}: {reason(error)}") from None
+
+
+def line_of(error: BaseException, path: Path | str) -> str:
+    """ ":LINE", the line of the file at which the error left it; empty where it was never there."""
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        return f":{error.lineno}" if error.lineno else ""
+    lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]
+    return f":{lines[-1]}" if lines else ""
+
+
+def reason(error: BaseException) -> str:
+    """The error in one line, with the remedy if there is a plain one."""
+    if isinstance(error, SystemExit):
+        return "calls sys.exit(): the file may define, but not end the command"
+    message = (str(error).splitlines() or [""])[0]
+    text = f"{type(error).__name__}: {message}" if message else type(error).__name__
+    if isinstance(error, ModuleNotFoundError):
+        return f"{text}: put it beside the file, or install it for {sys.executable}"
+    if isinstance(error, SyntaxError) and error.lineno:
+        return text.replace(f" ({Path(error.filename or '').name}, line {error.lineno})", "")
+    return text
+
+
+class _NoInput(io.TextIOBase):
+    """A standard input that refuses to be read."""
+
+    def readline(self, size: int = -1) -> str:
+        raise HairlutError("reads standard input: give the file what it needs in another file")
+
+    def read(self, size: int = -1) -> str:
+        return self.readline()
+
+
+@contextmanager
+def _null_descriptor() -> Iterator[None]:
+    """An empty file in place of the process's standard input, for code that reads below Python's streams."""
+    try:
+        kept = os.dup(0)
+    except OSError:  # there is none
+        yield
+        return
+    null = os.open(os.devnull, os.O_RDONLY)
+    try:
+        os.dup2(null, 0)
+        yield
+    finally:
+        os.dup2(kept, 0)
+        os.close(null)
+        os.close(kept)
+
+
+def _forget_neighbours(folder: Path, before: set[str]) -> tuple[Path, ...]:
+    """Drops the modules that lie in the folder and were imported since, for another file may have others of
+    the same names; their paths."""
+    found = []
+    for name in set(sys.modules) - before:
+        file = getattr(sys.modules[name], "__file__", None)
+        if file and Path(file).resolve().is_relative_to(folder):
+            found.append(Path(file))
+            del sys.modules[name]
+    return tuple(sorted(found))

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from .errors import HairlutError
+from .exact import exact_at
 from .lobes import Array, Lobe
 from .userfile import line_of, reason
 
@@ -51,6 +52,12 @@ def find_jump(lobe: Lobe, theta_r: float) -> float | None:
         low, high = np.where(upper, middle, low), np.where(upper, high, middle)
     left = abs(np.diff(np.exp(lobe.log_density(np.stack([low, high]), angle) - top), axis=0))[0]
     return float(high[np.argmax(left)]) if left.max() > JUMP else None
+
+
+def middle_half(lobe: Lobe, theta_r: Array) -> Array:
+    """(R,) widths, rad, of the middle half of the density at theta_r (R,)."""
+    ends = exact_at(lobe, theta_r).quantiles(np.full(2, 0.25), np.array([False, True]))
+    return np.ptp(ends, axis=1)
 
 
 def _points(lobe: Lobe) -> Array:

@@ -167,7 +167,16 @@ def load(path: Path) -> Model:
         for lobe in model.lobes:
             if not lobe.exact:  # a closed form comes of data that were checked
                 check_lobe(lobe, str(path))
-    return model
+    return replace(model, lobes=tuple(_guarded(lobe, path) for lobe in model.lobes))
+
+
+def _guarded(lobe: Lobe, path: Path) -> Lobe:
+    """The lobe, whose functions name the file where they fail: at places that the check did not see."""
+    if path.suffix != ".py" or lobe.exact:
+        return lobe
+    names = ("log_density", "breakpoints", "moments")
+    functions = {name: getattr(lobe, name) for name in names if callable(getattr(lobe, name))}
+    return replace(lobe, **{name: guarded(function, path) for name, function in functions.items()})
 
 
 def inputs(path: Path) -> list[Path]:
@@ -238,8 +247,7 @@ def _from_python(path: Path) -> Given:
     given = getattr(module, "LOBES", None)
     if given is None or not all(isinstance(lobe, Lobe) for lobe in given):
         raise HairlutError(f"{path}: expected LOBES, {SETTINGS['LOBES'][1]}")
-    lobes = [_guarded(lobe, path) for lobe in given]
-    return Given(lobes, getattr(module, "AZIMUTH", DIFFERENCE), getattr(module, "SHARES", None))
+    return Given(given, getattr(module, "AZIMUTH", DIFFERENCE), getattr(module, "SHARES", None))
 
 
 def _check_settings(path: Path, names: dict) -> None:
@@ -256,15 +264,6 @@ def _check_settings(path: Path, names: dict) -> None:
                 raise HairlutError(f"{path}: {name} is no setting: did you mean {near[0]}, {expected}?")
     if not all(isinstance(name, str) for name in names.get("INPUTS", ())):
         raise HairlutError(f"{path}: INPUTS is {names['INPUTS']!r}: expected {SETTINGS['INPUTS'][1]}")
-
-
-def _guarded(lobe: Lobe, path: Path) -> Lobe:
-    """The lobe, whose functions name the file wherever they fail."""
-    if lobe.exact:
-        return lobe
-    names = ("log_density", "breakpoints", "moments")
-    functions = {name: getattr(lobe, name) for name in names if callable(getattr(lobe, name))}
-    return replace(lobe, **{name: guarded(function, path) for name, function in functions.items()})
 
 
 # ---- TOML

@@ -30,7 +30,7 @@ from .text import read_text
 
 UNITS = {"deg": np.pi / 180, "rad": 1.0}
 KEYS = ("theta_r", "sigma", "mean", "shift")
-EXPECTED = "expected theta_r_deg, sigma_deg and either mean_deg or shift_deg (each may end in _rad instead)"
+EXPECTED = "expected theta_r_deg, sigma_deg and either mean_deg or shift_deg (each ends in _deg or _rad)"
 ROUNDED = 1e-4  # rad by which an angle written with few digits may exceed its range
 NARROWEST = np.radians(0.5)
 """No lobe of a hair is narrower, rad: a sigma in degrees below it is one in radians."""

@@ -12,13 +12,15 @@ import numpy as np
 
 from .. import batch_bake, exr, manifest, modelfile, size
 from ..errors import HairlutError
-from ..lobecheck import find_jump
+from ..lobecheck import find_jump, middle_half
 from ..lobes import MODELS, Lobe, Model
 from ..measure import measure
 from ..model import assemble
 from ..table import bake_table
 from ..warp import Warp
 from . import CHECK_FAILED, OK
+
+NARROW = 0.01  # of its domain: a lobe whose half lies within less needs a tall and wide table
 
 EXAMPLES = """examples:
   hairlut bake                                      both models into luts/, as small as V <= 1e-4 allows
@@ -189,20 +191,30 @@ def bake_all(lobes: list[Lobe], args: argparse.Namespace) -> list[size.Choice] |
         try:
             choices.append(bake_one(lobe, args))
         except size.ToleranceError as error:
-            print(f"hairlut: {error}{_jump(lobe)}", file=sys.stderr)
+            print(f"hairlut: {error}{_why(lobe)}", file=sys.stderr)
             return None
     return choices
 
 
-def _jump(lobe: Lobe) -> str:
-    """Where a density jumps, if it does: the likely reason why no table meets a tolerance."""
-    for theta_r in np.linspace(*lobe.theta_r_range, 19):
+def _why(lobe: Lobe) -> str:
+    """Where a density jumps or is narrow, if it is: the likely reason why no table meets a tolerance."""
+    angles = np.linspace(*lobe.theta_r_range, 19)
+    for theta_r in angles:
         x = find_jump(lobe, theta_r)
         if x is not None:
             return (
                 f". The density jumps at x = {x:.6g} rad where theta_r = {np.degrees(theta_r):.4g} deg: "
                 "no smooth table resolves that; replace the jump by a slope"
             )
+    angles = np.array(sorted(angles, key=abs))
+    width = middle_half(lobe, angles)
+    narrow = width < NARROW * (lobe.domain[1] - lobe.domain[0])
+    if narrow.any():
+        j = int(np.argmax(narrow))
+        return (
+            f". The density is narrow: it has half of the light within {width[j]:.3g} rad where theta_r = "
+            f"{np.degrees(angles[j]):.4g} deg"
+        )
     return ""
 
 

@@ -249,6 +249,6 @@ def _unmet(
         else "their cells are too narrow for floats"
     )
     return ToleranceError(
-        f"{lobe.model}/{lobe.name}: no table of up to {limit}x{limit} has V <= {tolerance:g}; {closest}: raise "
-        "--tolerance, or the limit with --max-size"
+        f"{lobe.model}/{lobe.name}: no table of up to {limit}x{limit} has V <= {tolerance:g}; {closest}: "
+        "raise --tolerance, or the limit with --max-size"
     )

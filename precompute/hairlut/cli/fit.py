@@ -1,8 +1,12 @@
 """hairlut fit: from measured, simulated or drawn scattering to model files that hairlut bake takes."""
 
 import argparse
+import json
+import math
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from time import perf_counter
 
 from ..errors import HairlutError
 from ..fit.decompose import PARTS
@@ -14,11 +18,23 @@ from . import OK
 
 Report = Callable[[str, float], None]
 
+DEFAULT_TOLERANCE = 0.01
+DEFAULT_BUDGET = 120.0
+MAX_LOBES = 8
+
 EXAMPLES = """examples:
+  hairlut fit my_hair.py --out luts           luts/my_hair/, ready for hairlut_load
+  hairlut fit my_hair.py --lobes 4 --tolerance 0.003 --budget 300
   hairlut fit goniometer.csv --out fits
   hairlut fit bsdf_grid.npz --measure solid-angle && hairlut bake --model fits/bsdf_grid_masses.npz
   hairlut fit offsets.npz && hairlut bake --model fits/offsets --size 64x37 --out baked/offsets
-the data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
+my_hair.py defines bsdf(theta_r, theta_i, phi) or bsdf(theta_r, theta_i, phi, offset), which returns f per
+steradian, without the cosine, as in L = integral of f L_i cos(theta_i) domega; the sampler draws f
+cos(theta_i). The arguments are numpy arrays that broadcast, in radians: inclinations from the plane normal to
+the fibre, and phi = phi_i - phi_r. offset, in (-1, 1), is where across its width the fibre is hit, in radii;
+from there its surface reflects to phi = -2 asin(offset). precompute/examples/chiang2016.py is a whole file,
+made from a paper in 40 lines.
+other data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
 CSV, or arrays of these names as npz. Coordinates that repeat are a grid, which must have each point once, and
 value is a density there. Otherwise each row is a draw, and value, which may be left out, its weight. A grid
 with a column offset (within [-1, 1]: where across its width the fibre is hit), or an npz whose value has
@@ -35,8 +51,8 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("data", type=Path, help="CSV or npz file")
-    parser.add_argument("--out", type=Path, default=Path("fits"), metavar="DIR", help="default: fits")
+    parser.add_argument("data", type=Path, help="a Python file that defines bsdf, or a CSV or npz file")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="default: luts, or fits for CSV and npz")
     parser.add_argument("--name", help="name of the model (default: that of the data file)")
     parser.add_argument(
         "--measure",
@@ -44,7 +60,27 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         default="angle",
         help="what a grid's values are densities in: theta_i and phi, or steradians (default: angle)",
     )
-    parser.add_argument("--lobes", choices=PARTS, default="both", help="what the data holds (default: both)")
+    parser.add_argument(
+        "--lobes",
+        metavar="K",
+        help=f"how many lobes a BSDF takes, 1 to {MAX_LOBES} (default: as many as gain); for data, "
+        f"what it holds: {', '.join(PARTS)} (default: both)",
+    )
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        default=DEFAULT_TOLERANCE,
+        metavar="V",
+        help="relative variance above what so many lobes can reach (default: %(default)g)",
+    )
+    parser.add_argument(
+        "--budget",
+        type=float,
+        default=DEFAULT_BUDGET,
+        metavar="SECONDS",
+        help="time after which the best fit so far is taken (default: %(default)g)",
+    )
+    parser.add_argument("--json", action="store_true", help="print a BSDF's result as JSON, and nothing else")
     parser.add_argument(
         "--rows",
         type=int,
@@ -74,6 +110,12 @@ def run(args: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import Progress
 
+    if args.data.suffix == ".py":
+        return _bsdf(args)
+    args.out = args.out or Path("fits")
+    args.lobes = args.lobes or "both"
+    if args.lobes not in PARTS:
+        raise HairlutError(f"--lobes {args.lobes}: expected one of {', '.join(PARTS)}")
     if args.rows < 2:
         raise HairlutError(f"--rows {args.rows}: expected 2 or more")
     console = Console(stderr=True)
@@ -135,3 +177,54 @@ def _plot(result, path: Path, name: str) -> Path:
             f"{error.name} is missing: pip install 'hairlut[report]', or use --no-plot"
         ) from None
     return path
+
+
+def _bsdf(args: argparse.Namespace) -> int:
+    """Fits, bakes and measures a BSDF."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    count = _checked(args)
+    name, out = args.name or args.data.stem, args.out or Path("luts")
+
+    from ..exr import write_model
+    from ..fit import bsdf, doubts, hair, refine, says
+
+    start = perf_counter()
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("reading", total=1.0)
+
+        def report(stage: str, share: float) -> None:
+            progress.update(task, description=stage, completed=share)
+
+        given = hair.of_density(*bsdf.load(args.data))
+        found = refine.fit(given, name, args.tolerance, count, args.budget, report)
+    for doubt in doubts.doubts(given, found.promised):
+        print(f"hairlut: {args.data}: warning: {doubt}", file=sys.stderr)
+    seconds = perf_counter() - start
+    paths = write_model(out / name, says.with_errors(found))
+    size = sum(path.stat().st_size for path in paths)
+    if args.json:
+        told = says.data(found, args.tolerance, seconds)
+        print(json.dumps({"data": str(args.data), "model": str(out / name), "bytes": size, **told}, indent=1))
+        return OK
+    print(says.text(found, args.tolerance, seconds))
+    print(f"\n{out / name}: {len(paths)} textures, {size / 1024:.0f} KB")
+    return OK
+
+
+def _checked(args: argparse.Namespace) -> int | None:
+    """How many lobes a BSDF is to take, None to choose; HairlutError for options that make no sense."""
+    name = args.name or args.data.stem
+    if Path(name).name != name or name.startswith((".", "-")):
+        raise HairlutError(f"--name {name}: expected the name of a directory")
+    for option in ("tolerance", "budget"):
+        value = getattr(args, option)
+        if not (math.isfinite(value) and value > 0):
+            raise HairlutError(f"--{option} {value}: expected a number above 0")
+    if args.lobes is None:
+        return None
+    if not (args.lobes.isdecimal() and 1 <= int(args.lobes) <= MAX_LOBES):
+        raise HairlutError(f"--lobes {args.lobes}: expected a number from 1 to {MAX_LOBES}")
+    return int(args.lobes)

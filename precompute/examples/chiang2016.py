@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Hair after Chiang, Bitterli, Tappan and Burley 2016, for one wavelength: hairlut fit
+precompute/examples/chiang2016.py"""
+
+import numpy as np
+
+BETA_M, BETA_N = 0.3, 0.3  # longitudinal and azimuthal roughness, 0 to 1
+ABSORPTION = 0.6  # sigma_a times the fibre's radius
+ETA, TILT = 1.55, np.radians(2.0)  # index of refraction; angle of the cuticle's scales
+
+V = (0.726 * BETA_M + 0.812 * BETA_M**2 + 3.7 * BETA_M**20) ** 2  # eq. 7
+S = np.sqrt(np.pi / 8) * (0.265 * BETA_N + 1.194 * BETA_N**2 + 5.372 * BETA_N**22)  # eq. 8
+VARIANCES = V, V / 4, 4 * V, 4 * V  # of R, TT, TRT, and all that follow
+TWO_PI = 2 * np.pi
+TILTS = 2 * TILT, -TILT, -4 * TILT, 0.0
+
+
+def longitudinal(theta_i, theta_r, v):
+    """M_p of d'Eon et al. 2011; sinh and I_0 as logarithms, since 1 / v is large for smooth hair."""
+    x = np.cos(theta_i) * np.cos(theta_r) / v
+    large = np.maximum(x, 12)
+    log_i0 = np.where(
+        x < 12, np.log(np.i0(np.minimum(x, 12))), large - np.log(TWO_PI * large) / 2 + 1 / (8 * large)
+    )
+    log_sinh = 1 / v + np.log1p(-np.exp(-2 / v)) - np.log(2)
+    return np.exp(log_i0 - np.sin(theta_i) * np.sin(theta_r) / v - log_sinh) / (2 * v)
+
+
+def azimuthal(phi):
+    """D of eq. 6, a logistic distribution cut to the circle."""
+    e = np.exp(-abs((phi + np.pi) % TWO_PI - np.pi) / S)
+    return e / (S * (1 + e) ** 2 * np.tanh(np.pi / (2 * S)))
+
+
+def fresnel(cosine):
+    refracted = np.sqrt(1 - (1 - cosine**2) / ETA**2)
+    parallel = (ETA * cosine - refracted) / (ETA * cosine + refracted)
+    across = (cosine - ETA * refracted) / (cosine + ETA * refracted)
+    return (parallel**2 + across**2) / 2
+
+
+def bsdf(theta_r, theta_i, phi, offset):
+    bent = np.arcsin(offset * np.cos(theta_r) / np.sqrt(ETA**2 - np.sin(theta_r) ** 2))  # gamma_t
+    path = 2 * np.cos(bent) / np.sqrt(1 - (np.sin(theta_r) / ETA) ** 2)
+    passed, reflected = np.exp(-ABSORPTION * path), fresnel(np.cos(theta_r) * np.sqrt(1 - offset**2))
+    strength = [reflected, (1 - reflected) ** 2 * passed]
+    strength.append(strength[1] * passed * reflected)
+    strength.append(strength[2] * passed * reflected / (1 - passed * reflected))  # evenly around the fibre
+    around = [azimuthal(phi - 2 * p * bent + 2 * np.arcsin(offset) - p * np.pi) for p in range(3)] + [
+        1 / TWO_PI
+    ]
+    lobes = zip(strength, TILTS, VARIANCES, around, strict=True)
+    return sum(a * longitudinal(theta_i, theta_r - t, v) * n for a, t, v, n in lobes) / np.cos(theta_i)

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a hair to a baked model: cells, lobes, tables, and again with finer cells where that gains.
+
+A fit has five axes: rows of theta_r, offsets, cells of theta_i and of phi, and lobes. It starts coarse. What
+the baked model loses is measured on its nodes, between rows, and between offsets. The axis whose loss stands
+out is refined, until what is measured at random viewers is within the tolerance of what so many lobes can
+reach, or the budget is spent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+
+from ..errors import HairlutError
+from ..lobes import Array
+from ..mixture import Mixture
+from ..model import BakedLobe, BakedModel
+from . import cells, promise, smooth, tables
+from .cells import Cells
+from .hair import Hair
+from .lobesfit import Row, first_row, improved, next_row
+from .turning import TWO_PI
+
+MAX_LOBES = 8
+GAIN = 0.002
+"""A lobe is worth its memory if it lowers V by this much, or by a quarter."""
+HEAVIEST = 10.0  # a weight that is a firefly
+FITTED_OFFSETS = 9  # offsets by which shapes are fitted; shares and turns are at all
+LAST_SWEEPS = 10
+START = {"theta_r": 37, "offset": 11, "theta_i": 32}
+LIMITS = {"theta_r": 145, "offset": 65, "theta_i": 128, "phi": 512}
+TABLE_PART = 0.08  # of the tolerance that each table may lose
+SHARE_OF_AXIS = 0.2  # of the tolerance above which an axis is refined
+WEIGHT_PARTS = 5.0  # what a weight that is too large counts
+LARGEST_STEP = 2.0
+VIEWERS, OFFSETS = 16, 8
+REPEATS = 6
+
+
+@dataclass(frozen=True)
+class Axes:
+    """How many rows of theta_r, offsets, and cells of theta_i and phi."""
+
+    theta_r: int
+    offset: int
+    theta_i: int
+    phi: int
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A baked model; reach: V that so many lobes have on the cells they were fitted to; loss: V and largest
+    weight by where they were measured ("nodes", "theta_r", "offset": between those); promised: losses at
+    random viewers, in `repeats` independent groups of as many."""
+
+    model: BakedModel
+    axes: Axes
+    reach: float
+    loss: dict[str, tuple[float, float]]
+    promised: promise.Losses
+    repeats: int = 1
+
+
+Report = Callable[[str, float], None]
+
+
+def fit(hair: Hair, name: str, tolerance: float, lobes: int | None, budget: float, report: Report) -> Fitted:
+    """The model of a hair. lobes: how many, or None to choose; budget: seconds that it may take, about."""
+    start = perf_counter()
+    random = np.random.default_rng(0)
+    axes = _first_axes(hair)
+    count = lobes or _lobes(hair, axes, report)
+    best: Fitted | None = None
+    while True:
+        began = perf_counter()
+        found = _fit_once(hair, name, axes, count, tolerance, random, report)
+        if best is None or _score(found, tolerance) < _score(best, tolerance):
+            best = found
+        seconds = perf_counter() - began
+        finer = _finer(found, hair, tolerance)
+        growth = np.prod([getattr(finer, axis) / getattr(axes, axis) for axis in LIMITS])
+        if finer == axes or perf_counter() - start + growth * seconds > budget:
+            return _measured(best, hair, random, report)
+        axes = finer
+
+
+def limits(found: Fitted, tolerance: float) -> list[str]:
+    """What keeps a fit from the tolerance: the names of axes, "lobes", or nothing."""
+    reached = found.promised.variance.mean() <= found.reach + tolerance
+    if reached and found.promised.weight.max() <= HEAVIEST:
+        return []
+    return list(_standing_out(found, tolerance)) or ["lobes"]
+
+
+def _measured(found: Fitted, hair: Hair, random: np.random.Generator, report: Report) -> Fitted:
+    """The fit with its promise measured again, at more places."""
+    groups = []
+    for k in range(REPEATS):
+        report("measuring", k / REPEATS)
+        theta_r, offset = _random_places(hair, random)
+        groups.append(promise.losses(found.model, hair.density, theta_r, offset, 2 * found.axes.phi, random))
+    parts = (
+        np.concatenate([getattr(group, name) for group in groups])
+        for name in ("theta_r", "offset", "variance", "weight", "light")
+    )
+    return replace(found, promised=promise.Losses(*parts), repeats=REPEATS)
+
+
+def _score(found: Fitted, tolerance: float) -> float:
+    return found.promised.variance.mean() + tolerance * max(0.0, found.promised.weight.max() / HEAVIEST - 1)
+
+
+def _first_axes(hair: Hair) -> Axes:
+    theta_r, offset = hair.rows(9)[[1, 4, 7]], np.sin(hair.angles(5))[:4]
+    offsets = START["offset"] * (1 if hair.mirrored else 2) - (not hair.mirrored) if hair.offsets else 1
+    return Axes(START["theta_r"], offsets, START["theta_i"], cells.phi_count(hair.density, theta_r, offset))
+
+
+def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
+    """How many lobes gain, on three viewers."""
+    theta_r = hair.rows(13)[[2, 6, 9]]
+    data = _cells(hair, theta_r, hair.angles(axes.offset), axes)
+    angle = hair.angles(axes.offset)
+    variance: list[float] = []
+    for count in range(1, MAX_LOBES + 1):
+        report("choosing lobes", count / MAX_LOBES)
+        variance.append(np.mean([first_row(m, angle, count, hair.offsets).variance(m) for m in data.mass]))
+        if variance[-1] < GAIN:
+            break
+    least = min(variance)
+    return next(k + 1 for k, v in enumerate(variance) if v <= least + max(GAIN, least / 4))
+
+
+def _cells(hair: Hair, theta_r: Array, angle: Array, axes: Axes) -> Cells:
+    offset = np.sin(angle)
+    some = offset[np.unique([0, len(offset) // 2, max(len(offset) - 2, 0)])]
+    edges = cells.theta_edges(hair.density, theta_r, some, axes.theta_i)
+    data = cells.of_density(hair.density, theta_r, offset, edges, axes.phi)
+    if not data.light.any():
+        raise HairlutError("the hair scatters no light: its f is 0 everywhere")
+    return data
+
+
+def _fit_once(
+    hair: Hair,
+    name: str,
+    axes: Axes,
+    count: int,
+    tolerance: float,
+    random: np.random.Generator,
+    report: Report,
+) -> Fitted:
+    report("evaluating", 0.0)
+    angle = hair.angles(axes.offset)
+    data = _cells(hair, hair.rows(axes.theta_r), angle, axes)
+    rows = fit_rows(data, angle, count, hair.offsets, lambda share: report("fitting lobes", share))
+    reach = float(np.mean([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)]))
+    model = bake(data, rows, name, hair.mirrored, TABLE_PART * tolerance)
+    report("measuring", 0.0)
+    loss = _losses(hair, model, axes, random)
+    theta_r, offset = _random_places(hair, random)
+    promised = promise.losses(model, hair.density, theta_r, offset, 2 * axes.phi, random)
+    if not np.isfinite(promised.variance).all():
+        raise HairlutError("the fit has numbers that are not finite")
+    return Fitted(model, axes, reach, loss, promised)
+
+
+def fit_rows(
+    data: Cells, angle: Array, count: int, turning: bool, report: Callable[[float], None] = lambda share: None
+) -> list[Row]:
+    """The lobes at all theta_r and offsets. The shapes are fitted at some offsets, from the middle row
+    outwards; shares and turns then at all."""
+    some = np.unique(np.linspace(0, len(angle) - 1, min(FITTED_OFFSETS, len(angle))).round().astype(int))
+    rows: dict[int, Row] = {}
+    middle, last = len(data.theta_r) // 2, len(data.theta_r)
+    for j in sorted(range(last), key=lambda j: abs(j - middle)):
+        mass = data.mass[j][some]
+        if j == middle:
+            rows[j] = first_row(mass, angle[some], count, turning)
+        else:
+            rows[j] = next_row(
+                _expected(data, rows, j, j - int(np.sign(j - middle))), mass, angle[some], turning
+            )
+        report(len(rows) / last)
+    if len(some) == len(angle):
+        return [rows[j] for j in range(last)]
+    return [_at_all(rows[j], data.mass[j], angle[some], angle, turning) for j in range(last)]
+
+
+def _expected(data: Cells, rows: dict[int, Row], j: int, before: int) -> Row:
+    """What the rows before j let expect there: inclinations that move with the mirror direction, and turns
+    that go on as they went."""
+    last, second = rows[before], rows.get(2 * before - j)
+    moved = data.theta_r[j] - data.theta_r[before]
+    old, new = data.theta_edges[before], data.theta_edges[j]
+    middles = (new[1:] + new[:-1]) / 2 + moved
+    density = last.theta / np.diff(old)[:, None]
+    theta = np.stack([np.interp(middles, (old[1:] + old[:-1]) / 2, one) for one in density.T], axis=1)
+    theta = (theta + 1e-30) * np.diff(new)[:, None]
+    turn = last.turn if second is None else 2 * last.turn - second.turn
+    return replace(last, theta=theta / theta.sum(axis=0), turn=turn)
+
+
+def _at_all(row: Row, mass: Array, some: Array, angle: Array, turning: bool) -> Row:
+    """The row of some offsets at all of them."""
+    share, turn = (
+        np.stack([np.interp(angle, some, part[:, k]) for k in range(part.shape[1])], axis=1)
+        for part in (row.share, row.turn)
+    )
+    there = replace(row, share=share, turn=turn)
+    return improved(there, mass, angle, LAST_SWEEPS, turning, there, shapes=False)
+
+
+def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -> BakedModel:
+    """The textures of the rows, each table losing at most `loss` of V."""
+    lobes = []
+    around = np.tile(np.linspace(0, TWO_PI, rows[0].phi.shape[1] + 1), (len(rows), 1))
+    share = np.stack([row.share for row in rows]).transpose(2, 0, 1)
+    turn = np.stack([row.turn for row in rows]).transpose(2, 0, 1)
+    for k in range(len(share)):
+        lobe, importance = f"lobe{k}", share[k].mean(axis=1)
+        theta = smooth.rows(
+            data.theta_r, data.theta_edges, np.stack([row.theta[:, k] for row in rows]), False
+        )
+        phi = smooth.rows(data.theta_r, around, np.stack([row.phi[k] for row in rows]), True)
+        lobes.append(
+            BakedLobe(
+                lobe,
+                tables.smallest(f"{lobe}_theta", name, theta, importance, loss),
+                tables.smallest(f"{lobe}_phi", name, phi, importance, loss),
+            )
+        )
+    mixture = Mixture(tuple(one.name for one in lobes), data.theta_r, data.offset, share, turn, mirrored)
+    return BakedModel(name, tuple(lobes), mixture)
+
+
+def _losses(
+    hair: Hair, model: BakedModel, axes: Axes, random: np.random.Generator
+) -> dict[str, tuple[float, float]]:
+    """V and the largest weight on nodes, between rows, and between offsets."""
+    theta_r, angle = hair.rows(axes.theta_r), hair.angles(axes.offset)
+    rows = np.linspace(0, axes.theta_r - 2, 9).round().astype(int)
+    nodes = np.unique(np.linspace(0, max(axes.offset - 2, 0), 5).round().astype(int))
+    at = {
+        "nodes": (theta_r[rows + 1], angle[nodes]),
+        "theta_r": ((theta_r[rows] + theta_r[rows + 1]) / 2, angle[nodes]),
+    }
+    if hair.offsets:
+        at["offset"] = theta_r[rows + 1], (angle[nodes] + angle[nodes + 1]) / 2
+    found = {}
+    for where, (viewers, angles) in at.items():
+        offset = np.tile(np.sin(angles), (len(viewers), 1))
+        loss = promise.losses(model, hair.density, viewers, offset, 2 * axes.phi, random)
+        found[where] = float(loss.variance.mean()), float(loss.weight.max())
+    return found
+
+
+def _random_places(hair: Hair, random: np.random.Generator) -> tuple[Array, Array]:
+    """Viewers (R,) and offsets (R, N), random in even strata."""
+    low, high = hair.theta_r
+    theta_r = low + (high - low) * (np.arange(VIEWERS) + random.random(VIEWERS)) / VIEWERS
+    if not hair.offsets:
+        return theta_r, np.zeros((VIEWERS, 1))
+    offset = (np.arange(OFFSETS) + random.random((VIEWERS, OFFSETS))) / OFFSETS
+    return theta_r, offset if hair.mirrored else 2 * offset - 1
+
+
+def _standing_out(found: Fitted, tolerance: float) -> dict[str, float]:
+    """The axes that lose more than their part of the tolerance, and what they lose, in such parts. Where only
+    the weights are large, the axis between whose nodes they are largest."""
+    base = found.loss["nodes"][0]
+    lost = {axis: found.loss[axis][0] - base for axis in ("theta_r", "offset") if axis in found.loss}
+    lost |= {"theta_i": (base - found.reach) / 2, "phi": (base - found.reach) / 2}
+    parts = {axis: v / (SHARE_OF_AXIS * tolerance) for axis, v in lost.items()}
+    parts = {axis: part for axis, part in parts.items() if part > 1}
+    if not parts and found.promised.weight.max() > HEAVIEST:
+        worst = max((w, axis) for axis, (_, w) in found.loss.items() if axis != "nodes")[1]
+        parts = {worst: WEIGHT_PARTS}
+    return parts
+
+
+def _finer(found: Fitted, hair: Hair, tolerance: float) -> Axes:
+    """The axes with those refined whose loss stands out, or the same if the tolerance is met."""
+    axes = found.axes
+    if not limits(found, tolerance):
+        return axes
+    counts = {}
+    for axis, parts in _standing_out(found, tolerance).items():
+        step = float(np.clip(parts**0.25, 1.25, LARGEST_STEP))
+        counts[axis] = _count(axis, getattr(axes, axis), step)
+    return replace(axes, **counts)
+
+
+def _count(axis: str, now: int, step: float) -> int:
+    """A count about step times as large: with rows that tables can share out, and cells in eights."""
+    if axis == "theta_r":
+        count = 12 * int(np.ceil((now - 1) * step / 12 - 1e-9)) + 1
+    elif axis == "offset":
+        count = 2 * int(np.ceil((now - 1) * step / 2 - 1e-9)) + 1
+    else:
+        count = 8 * int(np.ceil(now * step / 8 - 1e-9))
+    return min(count, LIMITS[axis])

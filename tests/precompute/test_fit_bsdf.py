@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a file that defines bsdf to textures whose promise an independent quadrature confirms."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hairlut import cli, exr
+
+EXAMPLE = "precompute/examples/chiang2016.py"
+BRIGHT = 1e-4
+
+NEAR = """
+import numpy as np
+from shapes import highlight
+
+def bsdf(theta_r, theta_i, phi, offset):
+    gamma = np.arcsin(offset)
+    share = 0.7 - 0.4 * abs(np.sin(gamma))
+    narrow = highlight(theta_r, theta_i, -0.05, 0.12, phi - np.pi + 0.7 * gamma, 8.0)
+    broad = highlight(theta_r, theta_i, 0.1, 0.4, phi + 2 * gamma, 8.0)
+    return (share * narrow + (1 - share) * broad) / np.cos(theta_i)
+"""
+SHAPES = """
+import numpy as np
+
+def highlight(theta_r, theta_i, shift, sigma, phi, kappa):
+    x = (theta_i + theta_r - shift) / sigma
+    return 0.1 * np.exp(-0.5 * x * x) / sigma * np.exp(kappa * (np.cos(phi) - 1))
+"""
+FAR = """
+import numpy as np
+from shapes import highlight
+
+def bsdf(theta_r, theta_i, phi):
+    return (highlight(theta_r, theta_i, 0.0, 0.05, phi - np.pi, 8.0)
+            + highlight(theta_r, theta_i, 0.0, 0.3, phi, 3.0)) / np.cos(theta_i)
+"""
+
+
+def fitted(folder, source):
+    """The file of a BSDF, beside one that it may import."""
+    (folder / "shapes.py").write_text(SHAPES)
+    (folder / "hair.py").write_text(source)
+    return folder / "hair.py"
+
+
+def run(path, out, capsys, *options):
+    assert cli.main(["fit", str(path), "--out", str(out), "--json", *options]) == cli.OK
+    said = capsys.readouterr()
+    return exr.read_model(out / path.stem), json.loads(said.out), said.err
+
+
+def quadrature(model, bsdf, theta_r, offset, count=(720, 512)):
+    """(V, largest weight) at one theta_r and offset, by a dense midpoint rule over the sphere."""
+    n, m = count
+    theta_i = ((np.arange(n) + 0.5) / n - 0.5) * np.pi
+    phi = (np.arange(m) + 0.5) / m * 2 * np.pi
+    f = bsdf(theta_r, theta_i[:, None], phi, offset)
+    p = np.broadcast_to(f * np.cos(theta_i[:, None]) ** 2, (n, m))
+    size = np.pi / n * 2 * np.pi / m
+    p = p / (p.sum() * size)
+    q = model.pdf(theta_r, 0.0, theta_i[:, None], phi, offset)
+    assert q.sum() * size == pytest.approx(1, abs=2e-3)
+    light = p / np.cos(theta_i[:, None])
+    weight = np.where(light > BRIGHT * light.max(), p / q, 0)
+    return float((p * p / q).sum() * size - 1), float(weight.max())
+
+
+def function(path):
+    """The bsdf that a file of these tests defines."""
+    space = {}
+    exec(
+        compile(SHAPES + path.read_text().replace("from shapes import highlight", ""), str(path), "exec"),
+        space,
+    )
+    bsdf = space["bsdf"]
+    return lambda *at: bsdf(*at[: bsdf.__code__.co_argcount])
+
+
+def test_a_near_field_hair_keeps_its_promise_between_nodes(tmp_path, capsys):
+    path = fitted(tmp_path, NEAR)
+    model, told, err = run(path, tmp_path / "out", capsys)
+    assert told["lobes"] == 2
+    assert told["relative_variance"] < 0.01
+    assert told["largest_weight"] < 10
+    assert model.mixture.mirrored
+    bsdf = function(path)
+    found = [quadrature(model, bsdf, t, h) for t in (-0.93, 0.111, 0.62) for h in (0.13, -0.47, 0.81)]
+    variance, weight = np.mean([v for v, _ in found]), max(w for _, w in found)
+    assert variance == pytest.approx(told["relative_variance"], rel=0.25, abs=0.003)
+    assert weight < 1.5 * told["largest_weight"]
+    assert "warning" not in err
+
+
+def test_a_far_field_hair_takes_several_lobes_without_turns(tmp_path, capsys):
+    path = fitted(tmp_path, FAR)
+    model, told, _ = run(path, tmp_path / "out", capsys)
+    assert told["lobes"] == 2
+    assert not model.mixture.turn.any()
+    assert len(model.mixture.offset) == 1
+    for theta_r in (-1.2, 0.04, 0.7):
+        variance, weight = quadrature(model, function(path), theta_r, 0.0)
+        assert variance < 0.01
+        assert weight < 10
+
+
+def test_the_number_of_lobes_can_be_fixed(tmp_path, capsys):
+    model, told, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys, "--lobes", "1")
+    assert told["lobes"] == len(model.lobes) == 1
+    assert told["relative_variance"] > 0.2
+
+
+def test_the_promise_is_in_the_header(tmp_path, capsys):
+    model, told, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys)
+    assert model.errors["mixture"]["relative_variance"] == pytest.approx(told["relative_variance"], rel=1e-3)
+    assert model.errors["mixture"]["largest_weight"] == pytest.approx(told["largest_weight"], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("factor", "warned"),
+    [
+        ("np.cos(theta_i)", "have the cosine already"),
+        ("9 * np.cos(theta_i)**0", "times the light that it receives"),
+    ],
+)
+def test_a_likely_wrong_measure_is_said_and_the_model_still_written(tmp_path, capsys, factor, warned):
+    text = f"""
+import numpy as np
+def bsdf(theta_r, theta_i, phi):
+    half = (theta_i + theta_r) / 2
+    return np.exp(-0.5 * (half / 0.15) ** 2) * np.exp(np.cos(phi)) / np.cos(half) * {factor}
+"""
+    _, _, err = run(fitted(tmp_path, text), tmp_path / "out", capsys)
+    assert warned in err
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("def bsdf(theta_r, theta_i):\n    return 1.0\n", "expected a function bsdf(theta_r, theta_i, phi)"),
+        ("f = 1\n", "has no bsdf"),
+        ("def bsdf(theta_r, theta_i, phi):\n    return theta_i\n", "expected a finite number, 0 or more"),
+        ("def bsdf(theta_r, theta_i, phi):\n    return [1.0, 2.0, 3.0]\n", "returned the shape"),
+        ("import sys\nsys.exit()\n", "hair.py:2: calls sys.exit()"),
+        ("def bsdf(theta_r, theta_i, phi):\n    return input()\n", "hair.py:2"),
+        ("def bsdf(theta_r, theta_i, phi):\n    return 1 / 0\n", "hair.py:2: ZeroDivisionError"),
+        ("def bsdf(theta_r, theta_i, phi):\n    return 0.0 * theta_i\n", "no light"),
+    ],
+)
+def test_a_file_that_is_wrong_is_refused_in_one_line(tmp_path, capsys, text, expected):
+    path = fitted(tmp_path, text)
+    assert cli.main(["fit", str(path), "--out", str(tmp_path / "out")]) == cli.WRONG_USE
+    said = capsys.readouterr().err
+    assert expected in said
+    assert "Traceback" not in said
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "options", [("--lobes", "9"), ("--lobes", "x"), ("--tolerance", "0"), ("--budget", "nan")]
+)
+def test_options_that_make_no_sense_are_refused(tmp_path, capsys, options):
+    path = fitted(tmp_path, FAR)
+    assert cli.main(["fit", str(path), "--out", str(tmp_path / "out"), *options]) == cli.WRONG_USE
+    assert options[0] in capsys.readouterr().err
+
+
+def test_the_example_from_the_paper_scatters_what_it_says():
+    """Its M_p sums to 1 over the hemisphere, and its azimuth to 1 around the fibre."""
+    space = {}
+    exec(Path(EXAMPLE).read_text(), space)
+    theta_i = (np.arange(4000) + 0.5) / 4000 * np.pi - np.pi / 2
+    phi = (np.arange(4000) + 0.5) / 4000 * 2 * np.pi
+    for v in (0.002, 0.05, 0.3):
+        for theta_r in (-1.2, 0.0, 0.9):
+            total = (space["longitudinal"](theta_i, theta_r, v) * np.cos(theta_i)).mean() * np.pi
+            assert total == pytest.approx(1, abs=1e-3)
+    assert space["azimuthal"](phi).mean() * 2 * np.pi == pytest.approx(1, abs=1e-6)

@@ -22,6 +22,7 @@ from .modelfile import SUFFIXES
 
 UP_TO_DATE = "up to date"
 STATUSES = ("baked", UP_TO_DATE, "failed")
+TIMEOUT = 600.0  # seconds that a model of a directory may take
 
 # -P: import nothing from the working directory, which may hold a folder named hairlut
 COMMAND = (sys.executable, "-P", "-m", "hairlut.cli")
@@ -81,12 +82,13 @@ def bake_many(
     options: Sequence[str],
     jobs: int,
     is_current: Callable[[Path], bool],
+    timeout: float = TIMEOUT,
     report: Callable[[Outcome], None] = lambda outcome: None,
 ) -> list[Outcome]:
-    """Bakes each model file that is not current with these options of `hairlut bake`, `jobs` at a time; the
-    outcomes in order."""
+    """Bakes each model file that is not current with these options of `hairlut bake`, `jobs` at a time, and
+    lets none take longer than timeout, in seconds; the outcomes in order."""
     with ThreadPoolExecutor(max_workers=jobs) as pool:
-        waiting = [pool.submit(_bake, source, options, is_current) for source in sources]
+        waiting = [pool.submit(_bake, source, options, is_current, timeout) for source in sources]
         try:
             for done in as_completed(waiting):
                 report(done.result())
@@ -96,20 +98,27 @@ def bake_many(
     return [future.result() for future in waiting]
 
 
-def _bake(source: Path, options: Sequence[str], is_current: Callable[[Path], bool]) -> Outcome:
+def _bake(
+    source: Path, options: Sequence[str], is_current: Callable[[Path], bool], timeout: float
+) -> Outcome:
     """Runs the command for one model file, which reads nothing from the terminal."""
     start = monotonic()
     if is_current(source):
         return Outcome(source, UP_TO_DATE, "", monotonic() - start)
-    done = subprocess.run(
-        [*COMMAND, "bake", "--model", str(source), *options],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        env=os.environ | ONE_THREAD,
-        check=False,
-    )
+    try:
+        done = subprocess.run(
+            [*COMMAND, "bake", "--model", str(source), *options],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            env=os.environ | ONE_THREAD,
+            check=False,
+            timeout=timeout,
+        )
+    except subprocess.TimeoutExpired:
+        text = f"hairlut: {source}: not baked after {timeout:g} s: does it loop? else raise --timeout"
+        return Outcome(source, "failed", text, monotonic() - start)
     text = done.stdout.strip() or f"no output, exit code {done.returncode}"
     return Outcome(source, "failed" if done.returncode else "baked", text, monotonic() - start)

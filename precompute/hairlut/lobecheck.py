@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 
 from .errors import HairlutError
+from .exact import exact_at
 from .lobes import Array, Lobe
+from .userfile import line_of, reason
 
-ANGLES = 37
+ANGLES = 37  # odd: the middle one is theta_r = 0
 POINTS = 513
 JUMP = 1e-3
+HALVINGS = 48
+TURN = 2 * np.pi
+VECTORISE = "the density is not vectorised: use NumPy's functions (np.exp, np.where), which take arrays"
+SCALAR = ("only length-1", "only 0-dim", "truth value of an array", "must be real number", "broadcast")
+"""What NumPy and the standard library say of a function that cannot take arrays."""
 
 
 def check_lobe(lobe: Lobe, where: str) -> None:
@@ -22,21 +32,69 @@ def check_lobe(lobe: Lobe, where: str) -> None:
     _check_elementwise(lobe, where, x, theta_r, values)
 
 
+def check_units(lobe: Lobe, where: str) -> None:
+    """HairlutError for a Gaussian, or breakpoints, that have the numbers of degrees instead of radians."""
+    theta_r = np.linspace(*lobe.theta_r_range, ANGLES)
+    low, high = lobe.domain
+    if not callable(lobe.breakpoints):
+        for point in lobe.breakpoints:
+            if not low - TURN <= point <= high + TURN:
+                raise HairlutError(
+                    f"{where}: {lobe.name}: a breakpoint at {point:.6g} rad lies far outside [{low:.6g}, "
+                    f"{high:.6g}]: in degrees? give np.radians({point:.6g})"
+                )
+    if lobe.moments is None:
+        return
+    with _named(lobe, where), np.errstate(all="ignore"):
+        mean, sigma = (np.broadcast_to(part, theta_r.shape) for part in lobe.moments(theta_r))
+    central = theta_r == theta_r[ANGLES // 2]
+    for what, values, wrong in (
+        ("sigma", sigma, ~(sigma > 0)),
+        ("sigma", sigma, (sigma > high - low) | (central & (sigma > (high - low) / 2))),
+        ("mean", mean, ~np.isfinite(mean)),
+        ("mean", mean, (abs(mean) > TURN) | (central & (lobe.angle == "theta_i") & (abs(mean) > high))),
+    ):
+        if wrong.any():
+            j = int(np.argmax(wrong))
+            raise HairlutError(
+                f"{where}: {lobe.name} at theta_r = {_both(theta_r[j])}: {what} is {values[j]:.6g} rad"
+                f"{_remedy(lobe, what, values[j])}"
+            )
+
+
+def _remedy(lobe: Lobe, what: str, value: float) -> str:
+    if not np.isfinite(value) or (what == "sigma" and not value > 0):
+        return ": expected a finite number" + " above 0" * (what == "sigma")
+    flat = "; give a lobe that is really so flat by its density()" if what == "sigma" else ""
+    low, high = lobe.domain
+    return f", but {lobe.angle} runs from {low:.4g} to {high:.4g} rad: in degrees? give np.radians(...){flat}"
+
+
 def find_jump(lobe: Lobe, theta_r: float) -> float | None:
-    """Where the density at theta_r jumps by more than a thousandth of its maximum, if it does."""
+    """Where the density at theta_r jumps by more than a thousandth of its maximum, if it does.
+
+    Each of many intervals is halved towards its steeper half until its ends are neighbouring floats. Where a
+    density is merely narrow, these differ little.
+    """
     angle = np.array([theta_r])
     edges = np.linspace(*lobe.domain, POINTS)
     low, high = edges[:-1], edges[1:]
-    top = None
-    for _ in range(40):
+    top = -np.inf
+    for _ in range(HALVINGS):
         values = lobe.log_density(np.stack([low, (low + high) / 2, high]), angle)
-        top = values.max() if top is None else top
+        top = max(top, values.max())
         step = abs(np.diff(np.exp(values - top), axis=0))
         upper = step[1] > step[0]
         middle = (low + high) / 2
         low, high = np.where(upper, middle, low), np.where(upper, high, middle)
-    left = step.max(axis=0)
+    left = abs(np.diff(np.exp(lobe.log_density(np.stack([low, high]), angle) - top), axis=0))[0]
     return float(high[np.argmax(left)]) if left.max() > JUMP else None
+
+
+def middle_half(lobe: Lobe, theta_r: Array) -> Array:
+    """(R,) widths, rad, of the middle half of the density at theta_r (R,)."""
+    ends = exact_at(lobe, theta_r).quantiles(np.full(2, 0.25), np.array([False, True]))
+    return np.ptp(ends, axis=1)
 
 
 def _points(lobe: Lobe) -> Array:
@@ -49,26 +107,28 @@ def _both(theta_r: float) -> str:
     return f"{np.degrees(theta_r):.4g} deg ({theta_r:.6g} rad)"
 
 
+@contextmanager
+def _named(lobe: Lobe, where: str) -> Iterator[None]:
+    """Turns whatever the user's function does wrong into a HairlutError naming the lobe and the line."""
+    try:
+        yield
+    except (HairlutError, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        remedy = f": {VECTORISE}" if any(sign in str(error) for sign in SCALAR) else ""
+        raise HairlutError(f"{where}{line_of(error, where)}: {lobe.name}: {reason(error)}{remedy}") from None
+
+
 def _evaluate(lobe: Lobe, where: str, x: Array, theta_r: Array) -> Array:
     shape = np.broadcast_shapes(np.shape(x), np.shape(theta_r))
-    remedy = "the density is not vectorised: use NumPy's functions (np.exp, np.where), which take arrays"
-    try:
-        with np.errstate(all="ignore"):
-            values = np.asarray(lobe.log_density(x, theta_r), float)
-    except (TypeError, ValueError) as error:
-        raise HairlutError(f"{where}: {lobe.name}: {_first_line(error)}: {remedy}") from None
-    except Exception as error:  # whatever the user's function does wrong
-        raise HairlutError(f"{where}: {lobe.name}: {type(error).__name__}: {_first_line(error)}") from None
+    with _named(lobe, where), np.errstate(all="ignore"):
+        values = np.asarray(lobe.log_density(x, theta_r), float)
     try:
         return np.broadcast_to(values, shape)
     except ValueError:
         raise HairlutError(
-            f"{where}: {lobe.name}: a result of shape {values.shape} for arrays of shape {shape}: {remedy}"
+            f"{where}: {lobe.name}: a result of shape {values.shape} for arrays of shape {shape}: {VECTORISE}"
         ) from None
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def _check_row(lobe: Lobe, place: str, x: Array, angle: float, row: Array) -> None:

@@ -17,21 +17,10 @@ uniform one named <lobe>_phi:
 
 Angles are in radians. Every function gets NumPy arrays that broadcast against each other and works element
 by element. A <lobe>_theta is a density of theta_i in [-pi/2, pi/2], a <lobe>_phi of the relative azimuth in
-[0, 2 pi). None has to be normalised. Settings are upper case; a name that is almost one of them is refused.
-precompute/examples/ holds such files.
+[0, 2 pi). None has to be normalised. Settings are upper case; one that is misspelt is refused. The file may
+import its neighbours; userfile.py says how it runs. precompute/examples/ contains such files.
 
-A **TOML file** gives Gaussians as numbers, one for each tabulated theta_r, or one number for all:
-
-    azimuth = "difference"
-    [direct_theta]
-    theta_r_deg = [-60, 0, 60]
-    sigma_rad = 0.29
-    shift_deg = [-5, -3, 1]     # mean of theta_i + theta_r; mean_deg would be the mean of theta_i itself
-    [direct_phi]                # likewise, and [multiple_theta], or lobes of other names
-    [shares]                    # a number for each lobe, if they are not equal
-
-Each angle's name ends in `_deg` or `_rad`. Between the numbers a monotone cubic runs, which does not
-overshoot; outside them the nearest number holds.
+A **TOML file** gives Gaussians as numbers: tomlmodel.py.
 
 An **npz file** holds masses of cells, as `hairlut fit` writes them: for each lobe NAME the arrays NAME.edges,
 NAME.theta_r and NAME.mass of tabulated.TabulatedDensity, and the string `azimuth`.
@@ -40,26 +29,31 @@ NAME.theta_r and NAME.mass of tabulated.TabulatedDensity, and the string `azimut
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
-from traceback import extract_tb
-from types import ModuleType
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from . import lobes
 from .errors import HairlutError
-from .lobecheck import check_lobe
-from .lobes import AZIMUTHS, DIFFERENCE, MAX_LOBES, MODELS, NO_AZIMUTH, Lobe, Model, space
+from .lobecheck import check_lobe, check_units
+from .lobes import AZIMUTHS, DIFFERENCE, HALF_PI, MAX_LOBES, MODELS, NO_AZIMUTH, Lobe, Model, space
+from .npz import read_npz
 from .tabulated import TabulatedDensity
+from .tomlmodel import ROUNDED, curves, read_document
+from .userfile import guarded, run_file, user_code
 
 SUFFIXES = (".py", ".toml", ".npz")
-SETTINGS = ("LOBES", "AZIMUTH", "SHARES", "INPUTS")  # of a Python file
+SETTINGS = {
+    "LOBES": ((tuple, list), "a tuple of gaussian(), density() or tabulated()"),
+    "AZIMUTH": (str, f"one of {', '.join(AZIMUTHS)}"),
+    "SHARES": (dict, "a number for each lobe"),
+    "INPUTS": ((tuple, list), "a tuple of file names"),
+}
+"""Of a Python file: the type of each, and what it is in words."""
 
 KEPT = 16  # tabulated lobes: more than lie between two uses of the same one in a family
 
@@ -71,7 +65,7 @@ def _space(name: str) -> dict:
 
 def gaussian(name: str, mean, sigma, formula: str = "") -> Lobe:
     """A Gaussian cut to the lobe's domain; mean and sigma: numbers (rad) or functions of theta_r."""
-    mean_of, sigma_of = _function(mean), _function(sigma)
+    mean_of, sigma_of = _function(f"{name}: mean", mean), _function(f"{name}: sigma", sigma)
     return lobes.gaussian(
         lambda theta_r: (mean_of(theta_r), sigma_of(theta_r)),
         formula=formula or f"Gaussian of {space(name)['angle']}, from a model file",
@@ -110,7 +104,13 @@ def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
             f"{name}: the cells' edges run from {table.edges[0]:.6g} to {table.edges[-1]:.6g}, "
             f"expected the domain's {low:.6g} to {high:.6g} rad"
         )
-    text = f"{mass.shape[1]} measured cells at {len(table.theta_r)} theta_r, quantiles blended between them"
+    if abs(table.theta_r).max() > HALF_PI + ROUNDED:
+        raise HairlutError(
+            f"{name}: theta_r runs from {table.theta_r[0]:.6g} to {table.theta_r[-1]:.6g}, expected radians "
+            "within [-pi/2, pi/2]: are they degrees?"
+        )
+    cells, rows = len(table.edges) - 1, len(table.theta_r)
+    text = f"{cells} measured cells at {rows} theta_r, quantiles blended between them"
     lobe = density(name, log_density=table, formula=formula or text, breakpoints=table.breakpoints)
     return replace(lobe, own_height=table.own_height, exact=table.exact)
 
@@ -126,9 +126,11 @@ def _as_bytes(values) -> tuple[tuple[int, ...], bytes]:
     return values.shape, values.tobytes()
 
 
-def _function(value) -> Callable:
+def _function(what: str, value) -> Callable:
     if callable(value):
         return lambda theta_r: value(theta_r) + np.zeros_like(theta_r)
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
+        raise HairlutError(f"{what} is {value!r}: expected a number (rad) or a function of theta_r")
     return lambda theta_r: np.full_like(theta_r, value, dtype=float)
 
 
@@ -147,11 +149,14 @@ def find(text: str) -> Model:
     if text in MODELS:
         return MODELS[text]
     path = Path(text)
-    if path.suffix not in SUFFIXES or not path.is_file():
+    if path.suffix not in SUFFIXES:
+        remedy = ": hairlut fit makes a model of data" if path.suffix == ".csv" else ""
         raise HairlutError(
             f"model {text!r} is not known: expected one of {', '.join(MODELS)}, "
-            f"or a file ending in {', '.join(SUFFIXES)}"
+            f"or a file ending in {', '.join(SUFFIXES)}{remedy}"
         )
+    if not path.is_file():
+        raise HairlutError(f"model {text}: no such file")
     return load(path)
 
 
@@ -161,21 +166,35 @@ def load(path: Path) -> Model:
         raise HairlutError(f"{path}: a model takes its file's name: expected letters, digits, '_', '-', '.'")
     reader = {".py": _from_python, ".toml": _from_toml, ".npz": _from_npz}[path.suffix]
     model = assemble(path.stem, reader(path), str(path))
-    for lobe in model.lobes:
-        if not lobe.exact:  # a closed form comes of data that were checked
-            check_lobe(lobe, str(path))
-    return model
+    with user_code(path):
+        for lobe in model.lobes:
+            if path.suffix == ".py":  # TOML says the unit
+                check_units(lobe, str(path))
+            if not lobe.exact:  # a closed form comes of data that were checked
+                check_lobe(lobe, str(path))
+    return replace(model, lobes=tuple(_guarded(lobe, path) for lobe in model.lobes))
+
+
+def _guarded(lobe: Lobe, path: Path) -> Lobe:
+    """The lobe, whose functions name the file where they fail: at places that the check did not see."""
+    if path.suffix != ".py" or lobe.exact:
+        return lobe
+    names = ("log_density", "breakpoints", "moments")
+    functions = {name: getattr(lobe, name) for name in names if callable(getattr(lobe, name))}
+    return replace(lobe, **{name: guarded(function, path) for name, function in functions.items()})
 
 
 def inputs(path: Path) -> list[Path]:
-    """The model file and the files that it names in INPUTS; HairlutError if one of these is missing."""
+    """The model file, the files that it names in INPUTS, and those beside it that it imports; HairlutError if
+    one of these is missing."""
     if path.suffix != ".py":
         return [path]
-    named = [path.parent / name for name in getattr(_execute(path), "INPUTS", ())]
+    run = run_file(path)
+    named = [path.parent / name for name in getattr(run.module, "INPUTS", ())]
     for file in named:
         if not file.is_file():
             raise HairlutError(f"{path}: INPUTS names {file}, which is missing")
-    return [path, *named]
+    return list(dict.fromkeys([path, *named, *run.neighbours]))
 
 
 @dataclass(frozen=True)
@@ -201,7 +220,7 @@ def assemble(name: str, given: Given, where: str) -> Model:
             raise HairlutError(f"{where}: {one} is there {names.count(one)} times, expected once")
         if one.endswith("_phi") and one.removesuffix("_phi") not in lobes:
             raise HairlutError(f"{where}: {one} has no {one.removesuffix('_phi')}_theta beside it")
-    if given.azimuth not in AZIMUTHS:
+    if not isinstance(given.azimuth, str) or given.azimuth not in AZIMUTHS:
         raise HairlutError(f"{where}: azimuth {given.azimuth!r}: expected one of {', '.join(AZIMUTHS)}")
     azimuths = {"phi": given.azimuth, "theta_i": NO_AZIMUTH}
     densities = tuple(replace(one, model=name, azimuth=azimuths[one.angle]) for one in given.lobes)
@@ -227,122 +246,63 @@ def _shares(lobes: list[str], shares: object, where: str) -> tuple[float, ...] |
 # ---- Python
 
 
-def _execute(path: Path) -> ModuleType:
-    module = ModuleType(path.stem)
-    module.__file__ = str(path)
-    try:
-        exec(compile(path.read_text(), str(path), "exec"), module.__dict__)
-    except HairlutError as error:
-        raise HairlutError(f"{path}: {error}") from None
-    except Exception as error:  # whatever the user's file does wrong
-        raise HairlutError(f"{path}{_line(error, path)}: {type(error).__name__}: {error}") from None
-    return module
-
-
 def _from_python(path: Path) -> Given:
-    module = _execute(path)
+    module = run_file(path).module
+    _check_settings(path, vars(module))
     given = getattr(module, "LOBES", None)
-    if not isinstance(given, (tuple, list)) or not all(isinstance(lobe, Lobe) for lobe in given):
-        raise HairlutError(f"{path}: expected LOBES, a tuple of gaussian(), density() or tabulated()")
-    _refuse_misspelt(path, module)
+    if given is None or not all(isinstance(lobe, Lobe) for lobe in given):
+        raise HairlutError(f"{path}: expected LOBES, {SETTINGS['LOBES'][1]}")
     return Given(given, getattr(module, "AZIMUTH", DIFFERENCE), getattr(module, "SHARES", None))
 
 
-def _refuse_misspelt(path: Path, module: ModuleType) -> None:
-    """HairlutError for a name that is almost one of SETTINGS; other names are the file's own."""
-    for name in vars(module):
-        near = get_close_matches(name.upper(), SETTINGS, n=1, cutoff=0.8)
-        if near and name not in SETTINGS and not name.startswith("_"):
-            raise HairlutError(f"{path}: {name} is no setting of a model: did you mean {near[0]}?")
-
-
-def _line(error: Exception, path: Path) -> str:
-    if isinstance(error, SyntaxError):
-        return f":{error.lineno}"
-    lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]
-    return f":{lines[-1]}" if lines else ""
+def _check_settings(path: Path, names: dict) -> None:
+    """HairlutError for a setting of another type, or a name that is almost a setting and has a value for it;
+    other names are the file's own."""
+    for name, value in names.items():
+        if name in SETTINGS:
+            kind, expected = SETTINGS[name]
+            if not isinstance(value, kind):
+                raise HairlutError(f"{path}: {name} is {value!r}: expected {expected}")
+        elif near := get_close_matches(name.upper(), SETTINGS, n=1, cutoff=0.8):
+            kind, expected = SETTINGS[near[0]]
+            if isinstance(value, kind) and not name.startswith("_"):
+                raise HairlutError(f"{path}: {name} is no setting: did you mean {near[0]}, {expected}?")
+    if not all(isinstance(name, str) for name in names.get("INPUTS", ())):
+        raise HairlutError(f"{path}: INPUTS is {names['INPUTS']!r}: expected {SETTINGS['INPUTS'][1]}")
 
 
 # ---- TOML
 
 
 def _from_toml(path: Path) -> Given:
-    try:
-        document = tomllib.loads(path.read_text())
-    except tomllib.TOMLDecodeError as error:
-        raise HairlutError(f"{path}: {error}") from None
-    azimuth, shares = document.pop("azimuth", DIFFERENCE), document.pop("shares", None)
-    for key, value in document.items():
-        if not isinstance(value, dict):
-            raise HairlutError(
-                f"{path}: {key} is not known: expected azimuth, [shares], and a table [<lobe>_theta] or "
-                "[<lobe>_phi] for each density"
-            )
-    given = [_gaussian_of_numbers(f"{path}: {name}", name, table) for name, table in document.items()]
+    tables, azimuth, shares = read_document(path)
+    given = []
+    for name, table in tables.items():
+        mean, sigma, formula = curves(f"{path}: {name}", name, table)
+        given.append(gaussian(name, mean, sigma, formula))
     return Given(given, azimuth, shares)
-
-
-def _gaussian_of_numbers(where: str, name: str, table: dict) -> Lobe:
-    values = {key.rpartition("_")[0]: _radians(where, key, value) for key, value in table.items()}
-    if set(values) not in ({"theta_r", "sigma", "mean"}, {"theta_r", "sigma", "shift"}):
-        raise HairlutError(
-            f"{where}: found {', '.join(table) or 'nothing'}: expected theta_r_deg, sigma_deg "
-            "and either mean_deg or shift_deg (each may end in _rad instead)"
-        )
-    theta_r, sigma = np.atleast_1d(values["theta_r"]), values["sigma"]
-    if not (np.diff(theta_r) > 0).all():
-        raise HairlutError(f"{where}: theta_r must increase strictly")
-    key = "shift" if "shift" in values else "mean"
-    centre, width = (_through(f"{where}: {k}", theta_r, values[k]) for k in (key, "sigma"))
-    for row in np.flatnonzero(np.atleast_1d(sigma) <= 0):
-        raise HairlutError(f"{where} at theta_r = {np.degrees(theta_r[row]):.4g} deg: sigma must be above 0")
-    mean, of = ((lambda t: centre(t) - t), " + theta_r") if key == "shift" else (centre, "")
-    text = f"Gaussian of {_space(name)['angle']}; mean{of} and sigma by monotone cubics"
-    return gaussian(name, mean, width, f"{text} through {theta_r.size} values of theta_r")
-
-
-def _radians(where: str, key: str, value) -> np.ndarray | float:
-    unit = {"deg": np.pi / 180, "rad": 1.0}.get(key.rpartition("_")[2])
-    numbers = value if isinstance(value, list) else [value]
-    if unit is None or not numbers or not all(type(v) in (int, float) and np.isfinite(v) for v in numbers):
-        raise HairlutError(
-            f"{where}: {key}: expected a number or a list of numbers, and a name ending in _deg or _rad"
-        )
-    return np.array(value, float) * unit
-
-
-def _through(where: str, theta_r: np.ndarray, values: np.ndarray) -> Callable:
-    """A monotone cubic through the values, held outside their range."""
-    if values.ndim == 0 or theta_r.size == 1:
-        return _function(float(np.atleast_1d(values)[0]))
-    if values.shape != theta_r.shape:
-        raise HairlutError(
-            f"{where}: {values.size} numbers for {theta_r.size} theta_r: expected one each, or one for all"
-        )
-    cubic = PchipInterpolator(theta_r, values)
-    return lambda t: cubic(np.clip(t, theta_r[0], theta_r[-1]))
 
 
 # ---- npz
 
 
 def _from_npz(path: Path) -> Given:
-    with np.load(path, allow_pickle=False) as arrays:
-        names = [key.removesuffix(".edges") for key in arrays if key.endswith(".edges")]
-        expected = {f"{name}.{key}" for name in names for key in ("edges", "theta_r", "mass")} | {"azimuth"}
-        missing, unknown = sorted(expected - {*arrays, "azimuth"}), sorted({*arrays} - expected)
-        if missing or unknown or not names:
-            problem = f"array {(missing or unknown or ['NAME.edges'])[0]} is "
-            problem += "not known" if unknown and not missing else "missing"
-            raise HairlutError(
-                f"{path}: {problem}: expected NAME.edges, NAME.theta_r and NAME.mass for each NAME, "
-                "<lobe>_theta or <lobe>_phi, and azimuth"
-            )
-        try:
-            given = [
-                tabulated(name, *(arrays[f"{name}.{key}"] for key in ("edges", "theta_r", "mass")))
-                for name in names
-            ]
-        except HairlutError as error:
-            raise HairlutError(f"{path}: {error}") from None
-        return Given(given, str(arrays["azimuth"]) if "azimuth" in arrays else DIFFERENCE)
+    arrays = read_npz(path, text=("azimuth",))
+    names = [key.removesuffix(".edges") for key in arrays if key.endswith(".edges")]
+    expected = {f"{name}.{key}" for name in names for key in ("edges", "theta_r", "mass")} | {"azimuth"}
+    missing, unknown = sorted(expected - {*arrays, "azimuth"}), sorted({*arrays} - expected)
+    if missing or unknown or not names:
+        problem = f"array {(missing or unknown or ['NAME.edges'])[0]} is "
+        problem += "not known" if unknown and not missing else "missing"
+        raise HairlutError(
+            f"{path}: {problem}: expected NAME.edges, NAME.theta_r and NAME.mass for each NAME, "
+            "<lobe>_theta or <lobe>_phi, and azimuth"
+        )
+    try:
+        given = [
+            tabulated(name, *(arrays[f"{name}.{key}"] for key in ("edges", "theta_r", "mass")))
+            for name in names
+        ]
+    except HairlutError as error:
+        raise HairlutError(f"{path}: {error}") from None
+    return Given(given, str(arrays.get("azimuth", DIFFERENCE)))

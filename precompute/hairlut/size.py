@@ -243,7 +243,12 @@ def _lowest(variance: Callable[[int], float], tolerance: float, heights: list[in
 def _unmet(
     lobe: Lobe, tolerance: float, limit: int, variance: float, width: int, height: int
 ) -> ToleranceError:
+    closest = (
+        f"the closest, {width}x{height}, has {variance:.2e}"
+        if width
+        else "their cells are too narrow for floats"
+    )
     return ToleranceError(
-        f"{lobe.model}/{lobe.name}: no table of up to {limit}x{limit} has V <= {tolerance:g}; the closest, "
-        f"{width}x{height}, has {variance:.2e}: raise --tolerance, or the limit with --max-size"
+        f"{lobe.model}/{lobe.name}: no table of up to {limit}x{limit} has V <= {tolerance:g}; {closest}: "
+        "raise --tolerance, or the limit with --max-size"
     )

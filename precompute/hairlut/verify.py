@@ -46,6 +46,8 @@ def verify(path: Path, model: Model | None = None) -> list[Report]:
     and that is TOML or npz.
     """
     path = Path(path)
+    if not path.exists():
+        raise HairlutError(f"{path}: no such file or directory")
     files = sorted(path.rglob("*.exr")) if path.is_dir() else [path]
     if not files:
         raise HairlutError(f"{path}: no .exr file in this directory: expected <model>/<table>.exr")

@@ -104,7 +104,39 @@ def test_a_model_that_waits_for_an_answer_fails(hairs, tmp_path):
     (hairs / "asks.py").write_text("input()\n")
     done = bake(hairs, tmp_path / "out")
     assert "3 models: 2 baked, 0 up to date, 1 failed" in done.stdout
-    assert "EOFError" in done.stderr
+    assert "asks.py: reads standard input" in done.stderr
+
+
+LOOPS = {
+    "the file": "while True: pass\n",
+    "a function": HAIR.format(sigma="lambda t: [0 for _ in iter(int, 1)]"),
+}
+
+
+@pytest.mark.parametrize("where", LOOPS)
+def test_a_model_that_loops_fails_in_time(where, hairs, tmp_path):
+    (hairs / "loops.py").write_text(LOOPS[where])
+    (hairs / "grey.py").unlink()
+    done = bake(hairs, tmp_path / "out", "--timeout", "8")
+    assert done.returncode == 1
+    assert "2 models: 1 baked, 0 up to date, 1 failed" in done.stdout
+    assert f"{hairs / 'loops.py'}: not baked after 8 s: does it loop?" in done.stderr
+
+
+def test_a_file_alone_has_a_timeout_too(hairs, tmp_path):
+    (hairs / "loops.py").write_text(LOOPS["the file"])
+    done = bake(hairs / "loops.py", tmp_path / "out", "--timeout", "2")
+    assert done.returncode == 1
+    assert "not baked after 2 s" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_model_that_quits_fails(hairs, tmp_path):
+    (hairs / "quits.py").write_text(HAIR.format(sigma=0.3) + "import sys\nsys.exit()\n")
+    done = bake(hairs, tmp_path / "out")
+    assert done.returncode == 1
+    assert "3 models: 2 baked, 0 up to date, 1 failed" in done.stdout
+    assert "quits.py:9: calls sys.exit()" in done.stderr
 
 
 def test_the_code_of_one_model_changes_no_other(hairs, tmp_path):

@@ -41,9 +41,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     except HairlutError as error:
         print(f"hairlut: {error}", file=sys.stderr)
         return WRONG_USE
-    except KeyboardInterrupt:
-        print("hairlut: interrupted; no file was left half-written", file=sys.stderr)
-        return 130
     except BrokenPipeError:  # the reader of our output, such as head, has seen enough
         sys.stderr.close()
         return OK
+    except OSError as error:  # a full disk, a file that may not be read
+        place = f"{error.filename}: " if error.filename else ""
+        print(f"hairlut: {place}{error.strerror or error}", file=sys.stderr)
+        return WRONG_USE
+    except MemoryError:
+        print("hairlut: out of memory: give it less data, or smaller sizes", file=sys.stderr)
+        return WRONG_USE
+    except KeyboardInterrupt:
+        print("hairlut: interrupted; no file was left half-written", file=sys.stderr)
+        return 130

@@ -12,13 +12,15 @@ import numpy as np
 
 from .. import batch_bake, exr, manifest, modelfile, size
 from ..errors import HairlutError
-from ..lobecheck import find_jump
+from ..lobecheck import find_jump, middle_half
 from ..lobes import MODELS, Lobe, Model
 from ..measure import measure
 from ..model import assemble
 from ..table import bake_table
 from ..warp import Warp
 from . import CHECK_FAILED, OK
+
+NARROW = 0.01  # of its domain: a lobe whose half lies within less needs a tall and wide table
 
 EXAMPLES = """examples:
   hairlut bake                                      both models into luts/, as small as V <= 1e-4 allows
@@ -27,6 +29,7 @@ EXAMPLES = """examples:
   hairlut bake --size 64x64 --warp uniform --out baseline
   hairlut bake --model my_hair.py                   lobes of your own (see the module hairlut.modelfile)
   hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/, or a family from hairlut fit
+  hairlut bake --model theirs.py --timeout 60       in a process of its own, ended if it takes longer
   parallel hairlut bake --out baked --model ::: hairs/*.py      the same on a queue's machines"""
 
 
@@ -47,6 +50,13 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--jobs", type=int, default=os.cpu_count(), metavar="N", help="models of a directory baked at a time"
+    )
+    parser.add_argument(
+        "--timeout",
+        type=float,
+        metavar="SECONDS",
+        help="seconds after which a model file fails, its process ended (default: "
+        f"{batch_bake.TIMEOUT:g} in a directory; a file alone has no limit)",
     )
     parser.add_argument("--force", action="store_true", help="bake model files that are up to date again")
     how_large = parser.add_mutually_exclusive_group()
@@ -89,9 +99,13 @@ def parse_size(text: str) -> tuple[int, int]:
 def run(args: argparse.Namespace) -> int:
     if args.warp and not args.size:
         raise HairlutError("--warp: a tolerance chooses the warp itself: give --size too")
+    if args.max_size < min(size.ladder(size.DEFAULT_LIMIT)):
+        raise HairlutError(
+            f"--max-size {args.max_size}: expected {min(size.ladder(size.DEFAULT_LIMIT))} or more"
+        )
     args.warp = args.warp and Warp.parse(args.warp)
     names = list(dict.fromkeys(args.model or MODELS))
-    if any(Path(name).is_dir() for name in names):
+    if args.timeout is not None or any(Path(name).is_dir() for name in names):
         return run_many(names, args)
     sources = {name: Path(name) for name in names if name not in MODELS}
     for name, source in list(sources.items()):
@@ -131,6 +145,9 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
 
     if args.jobs < 1:
         raise HairlutError(f"--jobs {args.jobs}: expected 1 or more")
+    timeout = batch_bake.TIMEOUT if args.timeout is None else args.timeout
+    if not timeout > 0:
+        raise HairlutError(f"--timeout {timeout:g}: expected seconds above 0")
     paths = [Path(name) for name in names]
     sources, family = batch_bake.model_files(paths), batch_bake.family_file(paths)
     console = Console(stderr=True)
@@ -144,7 +161,7 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
                 print(f"  {outcome.text}", file=sys.stderr, flush=True)
 
         outcomes = batch_bake.bake_many(
-            sources, passed_on(args), args.jobs, lambda source: is_current(source, args), report
+            sources, passed_on(args), args.jobs, lambda source: is_current(source, args), timeout, report
         )
     counts = {status: sum(o.status == status for o in outcomes) for status in batch_bake.STATUSES}
     print(f"{len(outcomes)} models: " + ", ".join(f"{count} {status}" for status, count in counts.items()))
@@ -178,20 +195,30 @@ def bake_all(lobes: list[Lobe], args: argparse.Namespace) -> list[size.Choice] |
         try:
             choices.append(bake_one(lobe, args))
         except size.ToleranceError as error:
-            print(f"hairlut: {error}{_jump(lobe)}", file=sys.stderr)
+            print(f"hairlut: {error}{_why(lobe)}", file=sys.stderr)
             return None
     return choices
 
 
-def _jump(lobe: Lobe) -> str:
-    """Where a density jumps, if it does: the likely reason why no table meets a tolerance."""
-    for theta_r in np.linspace(*lobe.theta_r_range, 19):
+def _why(lobe: Lobe) -> str:
+    """Where a density jumps or is narrow, if it is: the likely reason why no table meets a tolerance."""
+    angles = np.linspace(*lobe.theta_r_range, 19)
+    for theta_r in angles:
         x = find_jump(lobe, theta_r)
         if x is not None:
             return (
                 f". The density jumps at x = {x:.6g} rad where theta_r = {np.degrees(theta_r):.4g} deg: "
                 "no smooth table resolves that; replace the jump by a slope"
             )
+    angles = np.array(sorted(angles, key=abs))
+    width = middle_half(lobe, angles)
+    narrow = width < NARROW * (lobe.domain[1] - lobe.domain[0])
+    if narrow.any():
+        j = int(np.argmax(narrow))
+        return (
+            f". The density is narrow: it has half of the light within {width[j]:.3g} rad where theta_r = "
+            f"{np.degrees(angles[j]):.4g} deg"
+        )
     return ""
 
 

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..errors import HairlutError
 from . import OK
 
 EXAMPLES = """examples:
@@ -36,6 +37,10 @@ def run(args: argparse.Namespace) -> int:
     files = [
         file for path in args.path for file in (sorted(path.rglob("*.exr")) if path.is_dir() else [path])
     ]
+    if not files:
+        raise HairlutError(
+            f"{', '.join(map(str, args.path))}: no .exr file below: expected <model>/<table>.exr"
+        )
     for file in files:
         print(plot.plot_file(file, lobe_of(file, model), args.out))
     return OK

@@ -66,10 +66,10 @@ test: lint build
 	$(BIN)/python -m pytest
 
 bench: build
-	$(BIN)/python tests/bench/run.py
+	PYTHONPATH=tests $(BIN)/python -m bench.run
 
 report: build
-	$(BIN)/python tests/bench/run.py --build-only
+	PYTHONPATH=tests $(BIN)/python -m bench.run --build-only
 	$(REPORT) --bench $(BENCH)
 	$(HAIRLUT) view --out tests/report/pages/explorer.html
 	$(REPORT).shaders

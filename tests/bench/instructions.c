@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Runs one function for a number of samples, under callgrind: instructions FUNCTION MODEL. Collection is switched on
  * inside `counted` alone. */
 #include <stdio.h>
@@ -8,7 +9,7 @@
 
 enum { N = 4096 };
 
-static float theta_r[N], phi_r[N], u_theta[N], u_phi[N], weight[N], u_lobe[N], theta_i[N], phi_i[N], pdf[N], solid[N];
+static float theta_r[N], phi_r[N], u_lobe[N], u_theta[N], u_phi[N], theta_i[N], phi_i[N], pdf[N], solid[N];
 
 static float unit(void)
 {
@@ -48,8 +49,16 @@ __attribute__((noinline)) void counted(const char *what, const hairlut_model *m)
         hairlut_pdf_direct_n(m, N, theta_r, phi_r, theta_i, phi_i, pdf);
     else if (strcmp(what, "pdf_multiple_n") == 0)
         hairlut_pdf_multiple_n(m, N, theta_r, phi_r, theta_i, phi_i, pdf);
-    else if (strcmp(what, "sample_mixture_n") == 0)
-        hairlut_sample_mixture_n(m, N, weight, theta_r, phi_r, u_lobe, u_theta, u_phi, out);
+    else if (strcmp(what, "sample_hair") == 0)
+        for (int i = 0; i < N; ++i)
+            keep(i, hairlut_sample_hair(m, NULL, theta_r[i], phi_r[i], 0.0f, u_lobe[i], u_theta[i], u_phi[i]));
+    else if (strcmp(what, "pdf_hair") == 0)
+        for (int i = 0; i < N; ++i)
+            pdf[i] = hairlut_pdf_hair(m, NULL, theta_r[i], phi_r[i], 0.0f, theta_i[i], phi_i[i]);
+    else if (strcmp(what, "sample_hair_n") == 0)
+        hairlut_sample_hair_n(m, N, NULL, theta_r, phi_r, NULL, u_lobe, u_theta, u_phi, out);
+    else if (strcmp(what, "pdf_hair_n") == 0)
+        hairlut_pdf_hair_n(m, N, NULL, theta_r, phi_r, NULL, theta_i, phi_i, pdf);
     else if (strcmp(what, "nothing") != 0)
         exit(2);
 }
@@ -64,7 +73,6 @@ int main(int argc, char **argv)
         phi_r[i] = (unit() - 0.5f) * 6.28318548f;
         u_theta[i] = unit();
         u_phi[i] = unit();
-        weight[i] = 0.6f;
         u_lobe[i] = unit();
         keep(i, hairlut_sample_direct(model, theta_r[i], phi_r[i], u_theta[i], u_phi[i]));
     }

@@ -1,17 +1,21 @@
-"""`make bench`: bakes tables of 64x64 and 256x256, builds hairlut_bench, runs it, prints ratios of speed."""
+# SPDX-License-Identifier: BSD-3-Clause
+"""`make bench`: builds hairlut_bench, bakes a large model, times hairlut beside its rivals, prints ratios."""
 
 import argparse
-import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-import summary
+from bench import summary, timing
+
+from hairlut.errors import HairlutError
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "bench"
-SIZES = ("64x64", "256x256")
+LARGE = "256x256"
+# whole calls, one at a time and over arrays; threads and the study's warps are the report's
+CALLS = "^(fitted|brown|printed|fitted-.*)/[^/]+/[^/]+/(one|native|avx2|arrays[0-9]*)$"
 
 
 def tool(name: str) -> str:
@@ -19,25 +23,14 @@ def tool(name: str) -> str:
     beside = Path(sys.executable).parent / name
     found = str(beside) if beside.exists() else shutil.which(name)
     if not found:
-        sys.exit(f"bench: {name} is missing")
+        raise HairlutError(f"{name} is missing")
     return found
 
 
-def run(*command, **options) -> None:
-    done = subprocess.run([str(word) for word in command], check=False, **options)
+def run(*command: object) -> None:
+    done = subprocess.run([str(word) for word in command], check=False)
     if done.returncode:
-        sys.exit(done.returncode)
-
-
-def bake(directory: Path) -> None:
-    """One model directory for each reading and size: printed-64x64 and so on."""
-    shutil.rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
-    for size in SIZES:
-        for model in ("printed", "fitted"):
-            staging = directory.parent / f"bake-{size}"
-            run(tool("hairlut"), "bake", "--model", model, "--size", size, "--out", staging)
-            shutil.move(staging / model, directory / f"{model}-{size}")
+        raise HairlutError(f"{' '.join(map(str, command))} failed")
 
 
 def build() -> Path:
@@ -47,32 +40,47 @@ def build() -> Path:
     return BUILD / "hairlut_bench"
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+def bake(directory: Path) -> None:
+    """A large model, as directory/fitted-256x256."""
+    staging = directory.parent / "staging"
+    run(tool("hairlut"), "bake", "--model", "fitted", "--size", LARGE, "--out", staging)
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    shutil.move(staging / "fitted", directory / f"fitted-{LARGE}")
+
+
+def parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="bench", description=__doc__)
     parser.add_argument(
         "--luts",
         type=Path,
-        help="directory of model directories; default: baked for the benchmark, into build/bench/luts",
+        metavar="DIR",
+        help="further model directories (default: a large model, baked into build/bench/luts)",
     )
-    parser.add_argument("--filter", default=".", metavar="REGEX", help="which benchmarks to run")
+    parser.add_argument("--filter", default=CALLS, metavar="REGEX", help="which benchmarks to run")
     parser.add_argument("--build-only", action="store_true", help="build hairlut_bench, time nothing")
-    parser.add_argument("--repetitions", type=int, default=24)
-    parser.add_argument("--seconds", type=float, default=0.015, help="least time of each repeat")
+    parser.add_argument("--repetitions", type=int, default=timing.REPETITIONS)
+    parser.add_argument("--seconds", type=float, default=timing.LEAST_TIME, help="least time of each repeat")
     parser.add_argument("--json", type=Path, default=BUILD / "results.json", metavar="FILE")
-    args = parser.parse_args()
-    program = build()
-    if args.build_only:
-        return
-    if not args.luts:
-        args.luts = BUILD / "luts"
-        bake(args.luts)
-    environment = os.environ | {"MKL_THREADING_LAYER": "SEQUENTIAL"}
-    run(program, "--luts", args.luts, f"--benchmark_filter={args.filter}", f"--benchmark_out={args.json}",
-        "--benchmark_out_format=json", f"--benchmark_repetitions={args.repetitions}",
-        f"--benchmark_min_time={args.seconds}", "--benchmark_enable_random_interleaving=true",
-        env=environment, stdout=subprocess.DEVNULL)  # fmt: skip
-    print(summary.report(summary.read(args.json)))
+    return parser.parse_args()
+
+
+def main() -> int:
+    args = parse()
+    try:
+        program = build()
+        if args.build_only:
+            return 0
+        if not args.luts:
+            args.luts = BUILD / "luts"
+            bake(args.luts)
+        times = timing.measure(program, args.luts, args.filter, args.json, args.repetitions, args.seconds)
+    except HairlutError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return 2
+    print(summary.report(times))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -1,184 +1,126 @@
-"""Ratios of speed from one run of hairlut_bench: summary.py RESULTS.json.
+# SPDX-License-Identifier: BSD-3-Clause
+"""hairlut beside its rivals, in Markdown: what `make bench` prints and the speed page shows."""
 
-A ratio is taken of the least times of all repeats, since another program's interference only adds to them;
-then of the medians, with the spread of the ratios of single repeats, which the benchmark interleaves.
-"""
+from dataclasses import dataclass
 
-import argparse
-import json
-import statistics
-import sys
-from collections import defaultdict
-from pathlib import Path
+from bench.timing import ARRAYS, Times
 
-TABLES = ("direct_theta", "direct_phi", "multiple_theta")
-LOBES = ("direct", "multiple")
+from report.markdown import table
 
-
-def read(path: Path) -> dict[str, list[float]]:
-    """ns a sample of every repeat, by name."""
-    times = defaultdict(list)
-    for run in json.loads(path.read_text())["benchmarks"]:
-        if run.get("run_type") == "iteration" and not run.get("error_occurred"):
-            times[run.get("run_name", run["name"]).split("/repeats")[0]].append(run["ns"])
-    return dict(times)
-
-
-class Ratio:
-    """slow / fast: how many times faster the second is."""
-
-    def __init__(self, slow: list[float], fast: list[float]) -> None:
-        self.least = min(slow) / min(fast)
-        self.median = statistics.median(slow) / statistics.median(fast)
-        single = [a / b for a, b in zip(slow, fast, strict=False)]
-        self.low, self.high = min(single), max(single)
-
-    def __str__(self) -> str:
-        return f"{self.least:.2f}; {self.median:.2f} ({self.low:.2f} to {self.high:.2f})"
+CALLS = (
+    "vertex", "sample_hair", "pdf_hair", "sample_direct", "pdf_direct", "sample_multiple", "pdf_multiple",
+)  # fmt: skip
+RIVALS = {
+    "hybrid": "hybrid",
+    "plain": "closed form",
+    "logistic hybrid": "logistic hybrid",
+    "logistic": "logistic",
+    "SLEEF": "closed form, SLEEF's erf",
+    "Boost": "closed form, Boost.Math",
+    "MKL": "closed form, MKL",
+    "Box-Muller": "Box-Muller with rejection",
+    "Chiang": "Chiang 2016, its own sampler",
+}
+HOW = {"one": "one at a time", "arrays": "over arrays"}
+FORMS = {"one": ("one", "native"), "arrays": ARRAYS}
+FLAGS = {"native": ", fastest flags", "arrays256": ", 256 bits", "arrays512": ", 512 bits"}
 
 
-def models(times: dict[str, list[float]]) -> list[str]:
-    return sorted({name.split("/")[2] for name in times if name.startswith("sample/scalar/")})
+@dataclass(frozen=True)
+class Target:
+    """How many times as fast as a rival a call has to be."""
+
+    model: str
+    call: str
+    rival: str
+    how: str
+    factor: float
 
 
-def reading(model: str) -> str:
-    """The reading whose rivals a model is compared with, from its directory's name."""
-    return "printed" if model.startswith("printed") else "fitted"
+TARGETS = (
+    Target("fitted", "vertex", "hybrid", "one", 1.5),
+    Target("fitted", "vertex", "hybrid", "arrays", 1.0),
+    Target("fitted", "sample_hair", "hybrid", "one", 1.7),
+    Target("fitted", "sample_hair", "hybrid", "arrays", 1.2),
+    Target("fitted", "pdf_hair", "hybrid", "one", 0.8),
+    Target("fitted", "pdf_hair", "hybrid", "arrays", 0.9),
+    Target("fitted", "pdf_direct", "hybrid", "one", 0.8),
+    Target("fitted", "pdf_direct", "hybrid", "arrays", 0.9),
+    Target("brown", "vertex", "Chiang", "one", 3.0),
+    Target("brown", "vertex", "Chiang", "arrays", 3.0),
+)
 
 
-def fastest(times: dict[str, list[float]], prefix: str, suffix: str) -> list[float] | None:
-    """The rival's fastest form."""
-    found = [times[n] for n in times if n.startswith(prefix) and n.endswith(suffix)]
-    return min(found, key=min, default=None)
-
-
-def goals(
-    times: dict[str, list[float]], model: str, table: str
-) -> list[tuple[str, list[float] | None, list[float] | None]]:
-    """(what, slow, fast) of one table."""
-    here, rival = f"{model}/{table}", f"{reading(model)}/{table}"
-    scalar, batch = (
-        times.get(f"sample/scalar/{here}"),
-        times.get(f"sample/batch/{here}"),
+def report(times: Times) -> str:
+    """Everything that one run measured."""
+    heading = (
+        f"Least times on one thread of {times.place}. In parentheses: times hairlut's; bold: the rival "
+        f"is faster. A repeat took {times.interference():.0%} more than the least, in the median.\n"
     )
-    return [
-        (
-            "analytic, scalar / scalar sample (goal 8)",
-            times.get(f"rival/analytic/scalar/{rival}"),
-            scalar,
-        ),
-        (
-            "hybrid, scalar / scalar sample (goal 2.5)",
-            times.get(f"rival/hybrid/scalar/{rival}"),
-            scalar,
-        ),
-        (
-            "Boost, scalar / scalar sample",
-            times.get(f"rival/boost/scalar/{rival}"),
-            scalar,
-        ),
-        (
-            "analytic, vectorised / batch sample (goal 5)",
-            fastest(times, "rival/analytic/vector", rival),
-            batch,
-        ),
-        (
-            "hybrid, vectorised / batch sample (goal 4)",
-            fastest(times, "rival/hybrid/vector", rival),
-            batch,
-        ),
-        ("MKL / batch sample", times.get(f"rival/mkl/vector/{rival}"), batch),
-        (
-            "batch sample / floor from angles (limit 2.5)",
-            batch,
-            times.get(f"floor/angles/{here}"),
-        ),
-        (
-            "batch sample / floor from indices (limit 2.5)",
-            batch,
-            times.get(f"floor/index/{here}"),
-        ),
-        (
-            "pdf / sample of one table, scalar",
-            times.get(f"pdf/scalar/{here}"),
-            scalar,
-        ),
-        ("pdf / sample of one table, batch", times.get(f"pdf/batch/{here}"), batch),
-        (
-            "scalar sample / uniform in u (limit 1.5)",
-            scalar,
-            times.get(f"uniform/scalar/{here}"),
-        ),
-        (
-            "batch sample / uniform in u (limit 1.5)",
-            batch,
-            times.get(f"uniform/batch/{here}"),
-        ),
+    parts = [
+        heading,
+        headline(times),
+        targets(times),
+        *(beside(times, model, how) for model in times.models() for how in HOW),
     ]
+    return "\n".join(part for part in parts if part)
 
 
-def lobe_goals(times, model: str, lobe: str):
-    """The public functions: two tables, azimuth and both densities a sample."""
-
-    def get(what):
-        return times.get(f"lobe/{what}/{model}/{lobe}")
-
-    return [
-        (
-            "pdf / sample of a direction, scalar (limit 2.5)",
-            get("pdf/scalar"),
-            get("sample/scalar"),
-        ),
-        (
-            "pdf / sample of a direction, batch (limit 2.5)",
-            get("pdf/batch"),
-            get("sample/batch"),
-        ),
-        ("sample of a direction, scalar / batch", get("sample/scalar"), get("sample/batch")),
-    ]
+def headline(times: Times) -> str:
+    """What a path vertex costs: the whole hair sampled, and the density of a direction that a light chose."""
+    rows = []
+    for model, rivals in (("fitted", ("hybrid", "plain", "logistic")), ("brown", ("Chiang",))):
+        for how, label in HOW.items():
+            ours = times.least(model, "vertex", "hairlut", how)
+            if ours is None:
+                continue
+            rows.append((f"hairlut, {model}, {label}", f"{ours:.1f} ns", ""))
+            for who in rivals:
+                if theirs := times.fastest(model, "vertex", who, how):
+                    rows.append((f"{RIVALS[who]}, {label}", f"{theirs:.1f} ns", faster(ours, theirs)))
+    return table(("vertex", "time", "who is faster"), rows) if rows else ""
 
 
-def table(title: str, columns: list[str], rows: dict[str, list[str]]) -> list[str]:
-    head = [
-        f"\n{title}\n",
-        f"| | {' | '.join(columns)} |",
-        "|---" * (len(columns) + 1) + "|",
-    ]
-    return head + [f"| {name} | {' | '.join(cells)} |" for name, cells in rows.items()]
+def faster(ours: float, theirs: float) -> str:
+    if theirs >= ours:
+        return f"hairlut, {theirs / ours:.1f} times"
+    return f"**the rival, {ours / theirs:.1f} times**"
 
 
-def report(times: dict[str, list[float]]) -> str:
-    lines = ["Ratios of the least times; of the medians (and of single repeats, from lowest to highest)."]
-    for model in models(times):
-        for kind, names, of in (("table", TABLES, goals), ("lobe", LOBES, lobe_goals)):
-            rows: dict[str, list[str]] = {}
-            for name in names:
-                for what, slow, fast in of(times, model, name):
-                    rows.setdefault(what, []).append(str(Ratio(slow, fast)) if slow and fast else "not timed")
-            lines += table(f"{model}, by {kind}", list(names), rows)
-        rows = {}
-        for how in (
-            "sample/scalar",
-            "sample/avx2",
-            "sample/avx512",
-            "sample/neon",
-            "pdf/scalar",
-            "pdf/batch",
-            "floor/angles",
-        ):
-            cells = [times.get(f"{how}/{model}/{name}") for name in TABLES]
-            if all(cells):
-                rows[how] = [f"{min(c):.2f}" for c in cells]
-        lines += table(f"{model}, least ns a sample", list(TABLES), rows)
-    return "\n".join(lines)
+def targets(times: Times) -> str:
+    """The targets, each met or not met."""
+    rows = []
+    for aim in TARGETS:
+        ours = times.least(aim.model, aim.call, "hairlut", aim.how)
+        theirs = times.fastest(aim.model, aim.call, aim.rival, aim.how)
+        if ours and theirs:
+            call = f"{aim.model}, {aim.call}, {HOW[aim.how]}"
+            said = "met" if theirs / ours >= aim.factor else "**not met**"
+            rows.append((call, RIVALS[aim.rival], f"{theirs / ours:.2f}", aim.factor, said))
+    return table(("call", "rival", "hairlut's speed relative to it", "target", ""), rows) if rows else ""
 
 
-def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=Path)
-    print(report(read(parser.parse_args(arguments).results)))
-    return 0
+def beside(times: Times, model: str, how: str) -> str:
+    """A model's calls: hairlut's times, and those of every rival."""
+    ours = {call: ns for call in CALLS if (ns := times.least(model, call, "hairlut", how))}
+    if not ours:
+        return ""
+    rows = [("hairlut", *(f"{ns:.1f}" for ns in ours.values()))]
+    narrower = [times.least(model, call, "hairlut", "avx2") for call in ours] if how == "arrays" else []
+    if any(narrower):
+        rows.append(("hairlut, AVX2", *(f"{ns:.1f}" for ns in narrower)))
+    for who, label in RIVALS.items():
+        for form in FORMS[how]:
+            theirs = [times.least(model, call, who, form) for call in ours]
+            if any(theirs):
+                cells = (compared(ns, ours[call]) for call, ns in zip(ours, theirs, strict=True))
+                rows.append((label + FLAGS.get(form, ""), *cells))
+    return f"{model}, {HOW[how]}, ns\n\n" + table(("", *ours), rows)
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def compared(theirs: float | None, ours: float) -> str:
+    """A rival's time, and how many times hairlut's that is: bold where the rival is the faster one."""
+    if theirs is None:
+        return ""
+    text = f"{theirs:.1f} ({theirs / ours:.2f})"
+    return text if theirs >= ours else f"**{text}**"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The warps of the study (tests/report/study.py) in single precision; compiled once for each set of flags. */
 #include "warps.h"
 
@@ -5,9 +6,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "rivals/lobe.h"
+#include "rivals/giles.h"
 
-#ifdef WARPS_VECTOR
+#ifdef RIVAL_ARRAYS_WIDTH
 #define TABLE bench_warps_vector
 #define ONE static inline
 #else
@@ -39,7 +40,7 @@ ONE float logit(float u)
 
 ONE float probit(float u)
 {
-    return rival_erfinv((2.0f * u - 1.0f) / (1.0f + 2.0f * E));
+    return giles((2.0f * u - 1.0f) / (1.0f + 2.0f * E));
 }
 
 static inline uint32_t bits_of_tail(float u)

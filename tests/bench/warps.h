@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What each warp of the study costs by itself: u to the coordinate whose integer part is a cell, over arrays
  * of n. */
 #ifndef BENCH_WARPS_H

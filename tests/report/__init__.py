@@ -1,4 +1,4 @@
-"""The pages of tests/report/pages/: speed against error, hard cases, the study behind the design."""
+"""The pages of tests/report/pages/: speed, scale, hard cases, the study behind the design."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -9,8 +9,12 @@ from report.markdown import table
 
 PAGES = (
     (
-        "[Speed against error](speed_error.md)",
-        "time and variance of a sample, at every size, beside its rivals",
+        "[Speed](speed.md)",
+        "whole calls beside their rivals; time and variance of a sample, at every size",
+    ),
+    (
+        "[Scale](scale.md)",
+        "what more lobes, offsets, rows, columns and threads cost",
     ),
     (
         "[Hard cases](hard_cases.md)",
@@ -27,7 +31,7 @@ PAGES = (
 )
 
 AFTER = """
-`make report` writes the first three again, `hairlut plot luts` draws each table.
+`make report` writes the first four again, `hairlut plot luts` draws each table.
 
 ![Time per sample against relative variance](speed_error.svg)
 
@@ -51,9 +55,9 @@ def progress(title: str) -> Iterator[Callable[[str], None]]:
 
 
 def write(out: Path, luts: Path, bench: Path, parts: Iterable[str]) -> list[Path]:
-    """Writes the index and the pages of the parts named ("speed", "hard", "study", "pictures")."""
+    """Writes the index and the pages of the parts named ("speed", "scale", "hard", "study", "pictures")."""
     out.mkdir(parents=True, exist_ok=True)
-    pages = {"speed": _speed, "hard": _hard, "study": _study, "pictures": _pictures}
+    pages = {"speed": _speed, "scale": _scale, "hard": _hard, "study": _study, "pictures": _pictures}
     written = [page for part in parts for page in pages[part](out, luts, bench)]
     (out / "README.md").write_text(index())
     return [*written, out / "README.md"]
@@ -68,21 +72,38 @@ def _shipped(luts: Path) -> list:
 
 
 def _speed(out: Path, luts: Path, bench: Path) -> list[Path]:
-    from report import bake_speed, speed, timing
+    from bench import timing
 
-    with progress("speed against error") as step, TemporaryDirectory() as folder:
+    from report import bake_speed, speed
+
+    with progress("speed") as step, TemporaryDirectory() as folder:
         step("baking every size")
-        points = speed.bake_sizes(Path(folder))
+        points = speed.bake_sizes(Path(folder) / "luts")
         step("timing")
-        times = timing.run(bench, Path(folder), speed.PATTERN)
+        times = timing.measure(bench, Path(folder) / "luts", speed.NAMES, Path(folder) / "times.json")
     first = dict(list(speed.AXES.items())[:1])
     figures = [
         speed.draw(points, times, out / "speed_error.svg", first),
         speed.draw(points, times, out / "speed_error_axes.svg"),
     ]
-    page = out / "speed_error.md"
+    page = out / "speed.md"
     page.write_text(speed.page(points, times, bake_speed.section(bake_speed.compare(_shipped(luts)))))
     return [page, *figures]
+
+
+def _scale(out: Path, luts: Path, bench: Path) -> list[Path]:
+    from bench import timing
+
+    from report import scale
+
+    with progress("scale") as step, TemporaryDirectory() as folder:
+        step("writing models")
+        scale.write_models(Path(folder) / "luts")
+        step("timing")
+        times = timing.measure(bench, Path(folder) / "luts", scale.NAMES, Path(folder) / "times.json")
+    page = out / "scale.md"
+    page.write_text(scale.page(times))
+    return [page]
 
 
 def _hard(out: Path, luts: Path, bench: Path) -> list[Path]:

@@ -1,19 +1,22 @@
-"""Speed against error: tables of every size, other warps and cells, and the rivals, all timed in one run."""
+# SPDX-License-Identifier: BSD-3-Clause
+"""The speed page: whole calls beside their rivals, and the cost of a table of every size beside its error."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from bench import summary
+from bench.timing import REPETITIONS, Times
 
 from hairlut import exr, figures
 from hairlut.errors import HairlutError
-from hairlut.lobes import FITTED
+from hairlut.lobes import FITTED, Lobe
 from hairlut.measure import Errors, flat_cells, measure, narrowest_cell
-from hairlut.model import assemble
+from hairlut.mixture import constant
+from hairlut.model import BakedLobe, BakedModel
 from hairlut.size import EXPONENTS, MIN_STEPS, table_of_size
 from hairlut.table import Table, bake_table
 from hairlut.warp import Warp
-from report import timing
 from report.cells import LINEAR, PARABOLA, RATIONAL, Cell
 from report.markdown import table as markdown_table
 from report.study import as_half
@@ -21,21 +24,11 @@ from report.study import as_half
 LOBE = FITTED.direct_theta
 SIDES = (16, 32, 64, 128, 256, 512, 1024)
 SEARCHED = 128  # sides up to which e is searched for; above, the smallest that leaves no cell too narrow
-PATTERN = (
-    "(sample|uniform)/(scalar|batch)/.*/direct_theta|rival/.*/fitted/direct_theta|"
-    "(sample|uniform)/scalar/64/.*|warp/.*|pdf/(scalar|batch)/64/direct_theta|floor/(index|angles)/(64|256)/direct_theta"
+SHIPPED, UNIFORM = "octaves", "uniform"  # the designs that are timed: a model directory each, DESIGN-SIDE
+NAMES = (
+    "^(fitted|brown|printed)/[^/]+/[^/]+/(one|native|avx2|arrays[0-9]*)$|"
+    f"^({SHIPPED}|{UNIFORM})-.*/(sample|pdf)_direct/hairlut/(one|arrays)$|^warp/"
 )
-
-RIVALS = {
-    "analytic/scalar": "plain C: two erff, Giles' erfinv",
-    "hybrid/scalar": "hybrid: ends tabulated, Giles' erfinv",
-    "boost/scalar": "Boost.Math erf_inv",
-    "analytic/vector256": "analytic, vectorised by the compiler, 256 bits, -ffast-math",
-    "analytic/vector512": "analytic, vectorised by the compiler, AVX-512, -ffast-math",
-    "hybrid/vector256": "hybrid, vectorised by the compiler, 256 bits, -ffast-math",
-    "hybrid/vector512": "hybrid, vectorised by the compiler, AVX-512, -ffast-math",
-    "mkl/vector": "MKL: vsErf, vsErfInv, vsExp over arrays",
-}
 
 CANDIDATES = {
     "uniform": "uniform in u",
@@ -51,34 +44,22 @@ CANDIDATES = {
 
 @dataclass(frozen=True)
 class Point:
-    """One design at one size: what it costs an estimate. `timed` names its benchmark with {} for scalar or
-    batch."""
+    """One design at one size: what it costs an estimate. model: the directory that is timed, if it is."""
 
     design: str
     side: int
     errors: Errors
     bytes: int
     flat: int
-    timed: str | None
+    model: str | None
 
 
 def bake_sizes(folder: Path, sides=SIDES) -> list[Point]:
-    """Writes a model directory for each side below folder; the points of every design at every side."""
-    points = []
-    for side in sides:
-        e = write_square_model(folder / str(side), side)
-        points += designs(side, Warp("octaves", e))
-    return points
+    """Writes a model of one table for each side and timed design below folder; every design's points."""
+    return [point for side in sides for point in designs(folder, square(LOBE, side))]
 
 
-def write_square_model(folder: Path, side: int) -> float:
-    """Bakes the fitted model square; the e of its LOBE."""
-    tables = {lobe.name: square(lobe, side) for lobe in FITTED.lobes}
-    exr.write_model(folder, assemble(FITTED, tables))
-    return tables[LOBE.name].warp.e
-
-
-def square(lobe, side: int) -> Table:
+def square(lobe: Lobe, side: int) -> Table:
     if side <= SEARCHED:
         return table_of_size(lobe, side, side).table
     for exponent in EXPONENTS:
@@ -89,56 +70,58 @@ def square(lobe, side: int) -> Table:
     raise AssertionError("the widest e leaves wide cells")
 
 
-def bake_unless_flat(lobe, side: int, warp: Warp) -> Table | None:
+def bake_unless_flat(lobe: Lobe, side: int, warp: Warp) -> Table | None:
     try:
         return bake_table(lobe, side, side, warp)
     except HairlutError:
         return None
 
 
-def designs(side: int, warp: Warp) -> list[Point]:
+def designs(folder: Path, shipped: Table) -> list[Point]:
     """The shipped design and the simpler ones that it displaced, of one size."""
-    tables = {
-        ("octaves warp, curved cells", "sample/{}"): (bake_table(LOBE, side, side, warp), RATIONAL),
-        ("octaves warp, parabolas", None): (bake_table(LOBE, side, side, warp), PARABOLA),
-        ("octaves warp, linear cells", None): (bake_table(LOBE, side, side, warp), LINEAR),
-        ("uniform in u, linear cells", "uniform/{}"): (
-            bake_table(LOBE, side, side, Warp("uniform")), LINEAR,
-        ),
-    }  # fmt: skip
-    shipped, _ = next(iter(tables.values()))
+    uniform = bake_table(LOBE, shipped.width, shipped.height, Warp("uniform"))
     halves = replace(shipped, texels=as_half(shipped.texels, shipped.domain))
-    tables["octaves warp, curved cells, half floats", None] = halves, RATIONAL
+    timed = [write_alone(folder, name, table) for name, table in ((SHIPPED, shipped), (UNIFORM, uniform))]
     return [
-        _point(name, timed and f"{timed}/{side}/direct_theta", table, cell)
-        for (name, timed), (table, cell) in tables.items()
+        _point("octaves, rational quadratic cells", shipped, RATIONAL, 8, timed[0]),
+        _point("octaves, parabolas", shipped, PARABOLA, 4),
+        _point("octaves, linear cells", shipped, LINEAR, 4),
+        _point("uniform in u, rational quadratic cells", uniform, RATIONAL, 8, timed[1]),
+        _point("octaves, rational quadratic cells, half floats", halves, RATIONAL, 4),
     ]
 
 
-def _point(design: str, timed: str | None, table: Table, cell: Cell) -> Point:
+def write_alone(folder: Path, design: str, table: Table) -> str:
+    """A model of this one table, its azimuth uniform; the directory's name."""
+    name = f"{design}-{table.width}"
+    lobe = BakedLobe("direct", table, None)
+    exr.write_model(folder / name, BakedModel(table.model, (lobe,), constant(("direct",))))
+    return name
+
+
+def _point(design: str, table: Table, cell: Cell, texel: int, model: str | None = None) -> Point:
     between = 3 if table.width <= SEARCHED else 0  # so many rows leave no room for errors between them
     with np.errstate(all="ignore"):  # flat cells of half floats
         errors = measure(table, LOBE, between, read=cell.read)
-    size = table.texels.nbytes * (1 if "half" in design or cell is not RATIONAL else 2)
-    return Point(design, table.width, errors, size, flat_cells(table.texels), timed)
+    return Point(design, table.width, errors, texel * table.texels.size, flat_cells(table.texels), model)
 
 
 # ---- figures
 # --------------------------------------------------------------------------------------------------
 
 LOOKS = {
-    ("octaves warp, curved cells", "batch"): (figures.BLUE, "o-", "hairlut, batch"),
-    ("octaves warp, curved cells", "scalar"): (figures.BLUE, "o--", "hairlut, one call a sample"),
-    ("uniform in u, linear cells", "batch"): (figures.ORANGE, "s-", "uniform table, batch"),
-    ("uniform in u, linear cells", "scalar"): (figures.ORANGE, "s--", "uniform table, one call"),
+    (SHIPPED, "arrays"): (figures.BLUE, "o-", "hairlut, arrays"),
+    (SHIPPED, "one"): (figures.BLUE, "o--", "hairlut, one call a sample"),
+    (UNIFORM, "arrays"): (figures.ORANGE, "s-", "knots uniform in u, arrays"),
+    (UNIFORM, "one"): (figures.ORANGE, "s--", "knots uniform in u, one call"),
 }
 RIVAL_LOOKS = {
-    "boost/scalar": (figures.BROWN, "--", "Boost.Math"),
-    "analytic/scalar": (figures.RED, "--", "analytic in C"),
-    "hybrid/scalar": (figures.GREEN, "--", "hybrid"),
-    "mkl/vector": (figures.PURPLE, "-", "MKL, arrays"),
-    "analytic/vector256": (figures.RED, "-", "analytic, arrays"),
-    "hybrid/vector256": (figures.GREEN, "-", "hybrid, arrays"),
+    ("Boost", "one"): (figures.BROWN, "--", "Boost.Math"),
+    ("plain", "one"): (figures.RED, "--", "closed form"),
+    ("hybrid", "one"): (figures.GREEN, "--", "hybrid"),
+    ("plain", "arrays"): (figures.RED, "-", "closed form, arrays"),
+    ("hybrid", "arrays"): (figures.GREEN, "-", "hybrid, arrays"),
+    ("logistic", "arrays"): (figures.PURPLE, "-", "logistic, arrays"),
 }
 AXES = {
     "relative variance V that the table adds": lambda point: point.errors.relative_variance,
@@ -147,7 +130,7 @@ AXES = {
 }
 
 
-def draw(points: list[Point], times: timing.Times, path: Path, axes=AXES) -> Path:
+def draw(points: list[Point], times: Times, path: Path, axes=AXES) -> Path:
     """Nanoseconds a sample against each of the axes; rivals, which have no table, as lines across."""
     figure, panels = figures.new(
         1, len(axes), (8.4 if len(axes) == 1 else 15, 5.2), sharey=True, squeeze=False
@@ -157,22 +140,18 @@ def draw(points: list[Point], times: timing.Times, path: Path, axes=AXES) -> Pat
         _draw_rivals(panel, times, last=panel is panels[0][-1])
         panel.set(xscale="log", yscale="log", xlabel=label)
     first = panels[0][0]
-    first.set_ylabel("time per sample with density [ns]")
-    first.legend(loc="center", bbox_to_anchor=(0.45, 0.42), fontsize=8.5)
-    first.set_title("Theta of the direct lobe, model fitted; numbers are sides of square tables")
+    first.set_ylabel("time per sample with both densities [ns]")
+    first.legend(loc="best", fontsize=8.5)
+    first.set_title("One Gaussian in theta_i, uniform azimuth; numbers are sides of square tables")
     return figures.save(figure, path)
 
 
-def _draw_tables(panel, points: list[Point], times: timing.Times, value) -> None:
-    for (design, form), (colour, line, label) in LOOKS.items():
-        mine = [
-            (value(p), times.get(p.timed.format(form)), p.side)
-            for p in points
-            if p.design == design and p.timed
-        ]
-        mine = [each for each in mine if each[1] is not None]
+def _draw_tables(panel, points: list[Point], times: Times, value) -> None:
+    for (design, how), (colour, line, label) in LOOKS.items():
+        mine = [(value(p), ns, p.side) for p in points if p.model and p.model.startswith(design)
+                if (ns := times.least(p.model, "sample_direct", "hairlut", how))]  # fmt: skip
         panel.plot([x for x, _, _ in mine], [y for _, y, _ in mine], line, color=colour, label=label)
-        for x, y, side in mine if form == "batch" else []:
+        for x, y, side in mine if how == "arrays" else []:
             panel.annotate(
                 str(side),
                 (x, y),
@@ -184,9 +163,9 @@ def _draw_tables(panel, points: list[Point], times: timing.Times, value) -> None
             )
 
 
-def _draw_rivals(panel, times: timing.Times, last: bool) -> None:
-    for name, (colour, line, label) in RIVAL_LOOKS.items():
-        ns = times.get(f"rival/{name}/fitted/direct_theta")
+def _draw_rivals(panel, times: Times, last: bool) -> None:
+    for (who, how), (colour, line, label) in RIVAL_LOOKS.items():
+        ns = times.fastest("fitted", "sample_multiple", who, how)
         if ns is None:
             continue
         panel.axhline(ns, color=colour, linestyle=line, linewidth=1.1, alpha=0.75)
@@ -200,122 +179,170 @@ def _draw_rivals(panel, times: timing.Times, last: bool) -> None:
 # ---- the page
 # -------------------------------------------------------------------------------------------------
 
-ELSEWHERE = """
-Where a rival wins: scipy's truncnorm.ppf, which knows the closed form, inverts the same nodes in less time
-than hairlut's bake, which integrates any density (below). And a renderer that already holds the two ends of
-the interval and needs no density would be served faster by an array of inverse normals alone, which is a
-smaller task than the one timed here.
+TEXT = """# Speed
+
+Whole calls of hairlut.h on the shipped models, beside what a renderer would use instead. The least of
+{repetitions} repeats on one thread, in random order, of processor time, on {place}; in the median a
+repeat took {interference:.0%} longer. Compare these times with each other, not with another machine's.
+`make bench` prints the first tables again.
+
+A **vertex** of a path is one sample of the whole hair, with its densities, and the density of another
+direction, which a light chose. `sample_hair` and `pdf_hair` are its two calls; `direct` and `multiple`
+are single lobes. theta_r, phi_r and the random numbers are uniform, the light's directions uniform on
+the sphere, in arrays of 4096.
+
 """
 
-TEXT = """# Speed against error
+RIVALS = """
+The rivals ([tests/bench/rivals](../../bench/rivals)) are checked as hairlut is: their samples follow
+their densities, which integrate to 1. Both sides take angles and return angles, phi_i in [-pi, pi) and
+both densities.
+
+- *closed form*: the cut Gaussian's mean and width computed, two erff for the interval's ends, Giles'
+  erfinv, expf.
+- *hybrid*: ends, mean and width tabulated at 64 nodes of theta_r and interpolated, then Giles' erfinv
+  and expf.
+- *logistic*: a logistic of the same variance, cut likewise, which Chiang 2016 puts in a Gaussian's
+  place. It needs no erf. The *logistic hybrid* tabulates its ends. It is another lobe: what a user would
+  choose where a closed form matters.
+- *Box-Muller with rejection*: with the hybrid's rows; its density of a given direction is the hybrid's.
+- *SLEEF*, *Boost.Math*, *MKL*: the closed form with their erf, and Boost's and MKL's inverse.
+- *Chiang 2016, its own sampler*: the BSDF that `brown` is fitted to, with the sampler that its authors
+  derived, written from the paper, for a single channel of absorption.
+
+"one at a time" is a call of a function for each sample, compiled with hairlut's flags (-O2); "fastest
+flags" is the same with -O3 -march=native -ffast-math. Over arrays, rivals are loops that gcc vectorises
+with those flags and libmvec, for 256 and 512 bits. Their results then depend on the processor; hairlut's
+do not. The C library's scalar erff takes about 40 cycles, which is most of the scalar closed form's
+time. Its vector form (libmvec) is a modern one, faster than SLEEF's.
+
+"""
+
+SIZES = """## Time against error
 
 ![Time per sample against relative variance, quantile error and bytes](speed_error_axes.svg)
 
-One axis of the direct lobe (theta, model `fitted`), an angle with its density, random theta_r and u. All
-times are of one run on one thread, least of {repetitions} repetitions in random order, of processor time, on
-{processor}.
-Compare them with each other, not with another machine. The rivals evaluate the closed form of this Gaussian,
-so their V is 0: that a table can do without a closed form is its reason to be, and this page asks what it
-costs where there is one.
+One table, theta_i of the direct lobe of `fitted`, with a uniform azimuth: a direction and both
+densities. The rivals' lines are their samples of a lobe of that kind (`sample_multiple`), V = 0: that a
+table can do without a closed form is its reason to be, and this asks what it costs where there is one.
+
+"""
+
+LARGE = """
+V stops falling at about 256: there the end cells of a row are only a few float steps wide, and e has to
+grow with the width to keep them from vanishing. Who needs larger tables than the shipped ones? Nobody
+for V, which is below 1e-4 at {small} and cannot be seen there. A lobe that is narrow against the whole
+range of theta_r, or whose shape changes quickly with it, needs rows: [hard cases](hard_cases.md) has the
+sizes that such lobes took. Larger tables leave the caches, which is what the times show; in memory a
+model takes {ratio:.1f} times the bytes of its texels.
+
+Half floats cost the same time, since the library expands texels when it loads them. At every size some
+of their cells are flat: no angle, and so an infinite density. The [study](study.md) has the other 16-bit
+forms.
+
 """
 
 WARPS = """
-By themselves, the warps of the [study](study.md), u to the coordinate whose integer part is the cell. A map
-optimised for one lobe is a spline, which costs a search or a table of its own, and was not timed.
+By themselves, the warps of the [study](study.md), u to the coordinate whose integer part is the cell. A
+map optimised for one lobe is a spline, which costs a search or a table of its own, and was not timed.
 
 """
-HALF = """
-V stops falling at about 256: there the end cells of a row are only a few float steps wide, and e has to grow
-with the width to keep them from vanishing. Nothing is gained beyond that size, and 64x64 is where V is
-invisible already.
 
-Half floats cost the same time, since the library expands texels when it loads them. At every size some of
-their cells are flat: no angle, and so an infinite density. The [study](study.md) has the other 16-bit forms.
+ELSEWHERE = """
+## Elsewhere
+
+No graphics hardware was at hand: the shaders ran on software drivers, which say nothing about their
+speed. It was not measured.
+
 """
 
 
-def page(points: list[Point], times: timing.Times, others: str = "") -> str:
+def page(points: list[Point], times: Times, others: str = "") -> str:
     """The page as Markdown; others: further sections."""
-    text = TEXT.format(repetitions=timing.REPETITIONS, processor=times.processor)
-    parts = [text, verdict(times) + ELSEWHERE, "## Tables\n", _sizes(points, times), HALF]
-    parts += ["## Rivals\n", _rivals(times), "## What the warp costs\n", _warp(times), others]
-    return "\n".join(parts)
+    intro = TEXT.format(repetitions=REPETITIONS, place=times.place, interference=times.interference())
+    parts = [intro, "## Who is faster\n\n", summary.headline(times), "\n", summary.targets(times), RIVALS]
+    parts += [
+        f"\n### {text}"
+        for m in ("fitted", "brown", "printed")
+        for how in summary.HOW
+        if (text := summary.beside(times, m, how))
+    ]
+    parts += ["\n", SIZES, _sizes(points, times), large(points, times)]
+    parts += [
+        "## What the warp costs\n\n",
+        _warp(points, times),
+        WARPS,
+        _candidates(times),
+        ELSEWHERE,
+        others,
+    ]
+    return "".join(parts)
 
 
-def _sizes(points: list[Point], times: timing.Times) -> str:
+def _sizes(points: list[Point], times: Times) -> str:
     columns = (
-        "design", "side", "bytes", "V", "largest weight", "TV", "quantile error", "flat cells",
-        "ns, one call", "ns, batch",
+        "design", "side", "bytes", "in memory", "V", "largest weight", "TV", "quantile error", "flat cells",
+        "sample, one", "arrays", "density, one", "arrays",
     )  # fmt: skip
     return markdown_table(columns, (_size_row(point, times) for point in points))
 
 
-def _size_row(point: Point, times: timing.Times) -> tuple[str, ...]:
-    scalar, batch = (
-        times.get(point.timed.format(form)) if point.timed else None for form in ("scalar", "batch")
-    )
+def _size_row(point: Point, times: Times) -> tuple[object, ...]:
     errors = point.errors
+    measured = ("infinite", "", "", "") if point.flat else (
+        f"{errors.relative_variance:.1e}",
+        f"{errors.largest_weight:.3g}",
+        f"{errors.total_variation:.1e}",
+        f"{errors.inner_quantile_error:.1e}",
+    )  # fmt: skip
+    taken = [
+        times.least(point.model or "", f"{call}_direct", "hairlut", how)
+        for call in ("sample", "pdf")
+        for how in ("one", "arrays")
+    ]
+    memory = times.memory.get(point.model or "", "")
     return (
-        point.design,
-        str(point.side),
-        str(point.bytes),
-        f"{errors.relative_variance:.1e}" if not point.flat else "infinite",
-        f"{errors.largest_weight:.3g}" if not point.flat else "",
-        f"{errors.total_variation:.1e}" if not point.flat else "",
-        f"{errors.inner_quantile_error:.1e}" if not point.flat else "",
-        str(point.flat),
-        f"{scalar:.1f}" if scalar else "",
-        f"{batch:.2f}" if batch else "",
+        point.design, point.side, point.bytes, memory, *measured, point.flat,
+        *(f"{ns:.2f}" if ns else "" for ns in taken),
+    )  # fmt: skip
+
+
+def large(points: list[Point], times: Times) -> str:
+    """Who needs large tables, and what they cost."""
+    shipped = [p for p in points if p.model and p.model.startswith(SHIPPED)]
+    small = [p.side for p in shipped if p.errors.relative_variance < 1e-4]
+    ratios = [times.memory[p.model] / p.bytes for p in shipped if p.model in times.memory]
+    return LARGE.format(
+        small=f"{min(small)}x{min(small)}" if small else "no size here",
+        ratio=ratios[-1] if ratios else float("nan"),
     )
 
 
-def _rivals(times: timing.Times) -> str:
-    ours = {form: times.get(f"sample/{form}/64/direct_theta") for form in ("scalar", "batch")}
+def _warp(points: list[Point], times: Times) -> str:
     rows = []
-    for name, label in RIVALS.items():
-        ns = times.get(f"rival/{name}/fitted/direct_theta")
-        against = "scalar" if name.endswith("scalar") else "batch"
-        if ns is None:
-            rows.append((label, "not timed here", "", ""))
-        else:
-            spread = times.spread[f"rival/{name}/fitted/direct_theta"]
-            rows.append((label, f"{ns:.2f}", f"{spread:.0%}", f"{ns / ours[against]:.2f} ({against})"))
-    return markdown_table(("rival", "ns", "spread of repeats", "times hairlut's 64x64"), rows)
+    for side in sorted({p.side for p in points}):
+        for how, label in summary.HOW.items():
+            octaves, uniform = (
+                times.least(f"{design}-{side}", "sample_direct", "hairlut", how)
+                for design in (SHIPPED, UNIFORM)
+            )
+            if octaves and uniform:
+                rows.append(
+                    (
+                        f"{side}x{side}, {label}",
+                        f"{uniform:.2f}",
+                        f"{octaves:.2f}",
+                        f"{octaves / uniform - 1:+.0%}",
+                    )
+                )
+    return markdown_table(("sample of one table, ns", "uniform", "octaves", "more"), rows)
 
 
-def _warp(times: timing.Times) -> str:
-    rows = []
-    for name in ("direct_theta", "direct_phi", "multiple_theta"):
-        octaves, uniform = (times.get(f"{kind}/scalar/64/{name}") for kind in ("sample", "uniform"))
-        if octaves and uniform:
-            rows.append((name, f"{uniform:.1f}", f"{octaves:.1f}", f"{octaves / uniform - 1:+.0%}"))
-    whole = markdown_table(("table, 64x64, one call", "uniform, ns", "octaves, ns", "more"), rows)
-    return whole + WARPS + _candidates(times)
-
-
-def _candidates(times: timing.Times) -> str:
+def _candidates(times: Times) -> str:
     """The warps of the study, by themselves."""
     rows = []
     for name, label in CANDIDATES.items():
-        scalar, vector = (times.get(f"warp/{form}/{name}") for form in ("scalar", "vector"))
-        if scalar and vector:
-            rows.append((label, f"{scalar:.1f}", f"{vector:.2f}"))
+        one, arrays = (times.least("warp", name, "alone", how) for how in ("one", "arrays"))
+        if one and arrays:
+            rows.append((label, f"{one:.1f}", f"{arrays:.2f}"))
     return markdown_table(("warp", "ns, one call", "ns, arrays, compiler's fastest flags"), rows)
-
-
-def verdict(times: timing.Times) -> str:
-    """Who is faster, from the figures."""
-    ours = {form: times.get(f"sample/{form}/64/direct_theta") for form in ("scalar", "batch")}
-    lines = []
-    for name, label in RIVALS.items():
-        ns = times.get(f"rival/{name}/fitted/direct_theta")
-        if ns is None:
-            continue
-        mine = ours["scalar" if name.endswith("scalar") else "batch"]
-        who = (
-            f"hairlut is {ns / mine:.1f} times faster"
-            if ns > mine
-            else f"**the rival wins, {mine / ns:.1f} times**"
-        )
-        lines.append(f"- against {label}: {who}")
-    return "## Who is faster\n\n" + "\n".join(lines) + "\n"

@@ -30,7 +30,7 @@ readings, the azimuth, and theta of the multiple lobe; the readings share the la
    parabolas whose slopes come from the texels alone, which version 1 had, V at the same number of columns is
    8 to 20 times less, and the largest weight of the direct lobe is 1.6 instead of 5 to 7: a table of half the
    columns, and so of the same bytes, has the better of both. Linear cells take hundreds of columns. A sample
-   costs one more division an axis ([speed_error.md](speed_error.md)).
+   costs one more division an axis ([speed.md](speed.md)).
    **Slopes**: at inner knots 1 / density, but at most 8 times the smaller secant beside the knot, where it
    lies in a gap between two modes; without a bound V may be 4 and a weight 59 (the table of bounds). At the
    ends of the domain 1 / density may be 1e80; there the slope is the one that puts the end cell's middle on
@@ -229,5 +229,5 @@ def write(out: Path, step=lambda text: None) -> None:
     step("16-bit texels")
     parts += ["## Sixteen bits: V at the e that suits each best\n", sixteen_bits(study.encodings(HALF_SIDES))]
     parts += ["## All metrics\n", details(warps)]
-    parts += ["What the warp costs in C is measured in [speed_error.md](speed_error.md).\n"]
+    parts += ["What the warp costs in C is measured in [speed.md](speed.md).\n"]
     (out / "study.md").write_text("\n".join(parts))

@@ -1,17 +1,14 @@
-"""The report's parts: times parsed, pages with every row, figures that exist, and the bake's speed as a
+"""The report's parts: pages with every row, figures that exist, and the bake's speed as a
 ratio."""
-
-import json
-import stat
 
 import numpy as np
 import pytest
+from bench.timing import Times
 
 from hairlut import exr
-from hairlut.errors import HairlutError
 from hairlut.lobes import FITTED, MODELS
 from hairlut.warp import Warp
-from report import bake_speed, markdown, study, timing
+from report import bake_speed, markdown, study
 
 matplotlib = pytest.importorskip("matplotlib", reason="figures need pip install 'precompute[report]'")
 
@@ -40,32 +37,6 @@ def test_the_bake_is_fast_and_exact():
     assert ours.error <= min(polynomial.error, truncnorm.error)
 
 
-def test_times_are_the_least_of_the_repetitions(tmp_path):
-    entries = [
-        {"run_name": "sample/scalar/64/direct_theta", "run_type": "iteration", "ns": ns}
-        for ns in (3.0, 9.0, 4.0)
-    ]
-    entries.append({"run_name": "sample/scalar/64/direct_theta", "run_type": "aggregate", "ns": 99.0})
-    program = tmp_path / "bench"
-    program.write_text(f"#!/bin/sh\ncat <<'END'\n{json.dumps({'benchmarks': entries})}\nEND\n")
-    program.chmod(program.stat().st_mode | stat.S_IXUSR)
-    times = timing.run(program, tmp_path, ".*")
-    assert times.ns == {"sample/scalar/64/direct_theta": 3.0}
-    assert times.spread["sample/scalar/64/direct_theta"] == pytest.approx(6 / 3)
-
-
-def test_a_missing_benchmark_program_is_named(tmp_path):
-    with pytest.raises(HairlutError, match="build tests/bench"):
-        timing.run(tmp_path / "nothing", tmp_path, ".*")
-
-
-def test_a_processor_is_described_as_far_as_the_benchmark_says():
-    caches = [{"level": 1, "size": 32768}, {"level": 2, "size": 1048576}]
-    told = timing.describe("X", {"kernels": "avx2", "caches": caches})
-    assert told == "X (avx2 kernels, second-level cache of 1024 KiB)"
-    assert timing.describe("X", {"caches": caches[:1]}) == "X"
-
-
 def test_markdown_table():
     assert markdown.table(("a", "b"), [(1, "x")]) == "| a | b |\n| --- | --- |\n| 1 | x |\n"
 
@@ -74,16 +45,37 @@ def test_speed_page_says_who_wins(tmp_path):
     from report import speed
 
     points = speed.bake_sizes(tmp_path / "sizes", (16,))
-    assert (tmp_path / "sizes" / "16" / "direct_phi.exr").is_file()
-    names = {"sample/scalar/64/direct_theta": 10.0, "sample/batch/64/direct_theta": 2.0}
-    names |= {"sample/batch/16/direct_theta": 2.0, "uniform/scalar/16/direct_theta": 9.0}
-    names |= {"rival/analytic/scalar/fitted/direct_theta": 95.0, "rival/mkl/vector/fitted/direct_theta": 1.0}
-    times = timing.Times(names, dict.fromkeys(names, 0.1), "a processor")
+    assert (tmp_path / "sizes" / "octaves-16" / "mixture.exr").is_file()
+    repeats = {
+        "fitted/vertex/hairlut/one": [9.0, 10.0],
+        "fitted/vertex/hybrid/one": [15.0, 19.0],
+        "fitted/vertex/logistic/one": [3.0, 4.0],
+        "fitted/sample_multiple/hybrid/one": [7.0],
+        "octaves-16/sample_direct/hairlut/one": [2.5],
+        "uniform-16/sample_direct/hairlut/one": [2.0],
+        "octaves-16/sample_direct/hairlut/arrays": [1.0],
+    }
+    times = Times(repeats, "a processor", {"octaves-16": 8192})
     text = speed.page(points, times)
-    assert "against plain C: two erff, Giles' erfinv: hairlut is 9.5 times faster" in text
-    assert "MKL: vsErf, vsErfInv, vsExp over arrays: **the rival wins, 2.0 times**" in text
-    assert text.count("| octaves warp, curved cells | 16 |") == 1
+    assert "| hybrid, one at a time | 15.0 ns | hairlut, 1.7 times |" in text
+    assert "| logistic, one at a time | 3.0 ns | **the rival, 3.0 times** |" in text
+    assert "| octaves, rational quadratic cells | 16 | 2048 | 8192 |" in text
+    assert "| 16x16, one at a time | 2.00 | 2.50 | +25% |" in text
     assert speed.draw(points, times, tmp_path / "figure.svg").stat().st_size > 5000
+
+
+def test_scale_page_fits_a_line(tmp_path):
+    from report import scale
+
+    scale.write_models(tmp_path, lobes=(1, 2), offsets=(1, 5), sides=(16,))
+    assert {"lobes-1", "lobes-2", "offsets-5", "columns-16", "rows-16"} <= {
+        each.name for each in tmp_path.iterdir()
+    }
+    repeats = {f"lobes-{k}/vertex/hairlut/one": [10.0 + 5 * k] for k in scale.LOBES}
+    repeats |= {"fitted/vertex/hairlut/threads1": [8.0], "fitted/vertex/hairlut/threads2": [4.1]}
+    text = scale.page(Times(repeats, "a processor", {f"lobes-{k}": 1000 * k for k in scale.LOBES}))
+    assert "10.0 + 5.0 K" in text
+    assert "| 2 | 4.1 | 1.95 |" in text
 
 
 def test_plot_command_draws_a_file(tmp_path):

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The functions of hairlut.h as calls over arrays, beside those of the rivals.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hairlut.h"
+#include "rivals/rivals.h"
+
+extern "C" {
+#include "batch.h"
+}
+
+namespace bench {
+
+using Call = std::function<void(const rival_arrays &)>;
+using Calls = std::vector<std::pair<std::string, Call>>;
+
+// sample, density and vertex of the whole hair: a call of a function a sample, or over arrays by these kernels
+Calls hair_calls(const hairlut_model &model);
+Calls hair_calls(const hairlut_model &model, const hairlut_batch &kernels);
+
+// sample_NAME and pdf_NAME of one lobe
+Calls lobe_calls(const hairlut_model &model, const std::string &name);
+Calls lobe_calls(const hairlut_model &model, const std::string &name, const hairlut_batch &kernels);
+
+}  // namespace bench

@@ -112,7 +112,7 @@ typedef struct hairlut_lobe_desc {
 
 /* Shares and turns at the nodes of a grid over theta_r and the offset. Both are linear in theta_r and in the asin of the offset
  * between nodes, and constant beyond them; turns are blended along the shorter arc. One node where nothing depends on an axis.
- * Lobe k's value at theta_r node j and offset node o stands at [(k*theta_r_count + j)*offset_count + o]. */
+ * At most 2^18 nodes in all. Lobe k's value at theta_r node j and offset node o stands at [(k*theta_r_count + j)*offset_count + o]. */
 typedef struct hairlut_mixture_desc {
     size_t size;          /* sizeof(hairlut_mixture_desc) */
     int theta_r_count;    /* 1 to 4096 */

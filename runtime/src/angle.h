@@ -79,7 +79,8 @@ static inline float hairlut_asin(float h)
     const float p = hairlut_arcsine[3] + z * hairlut_arcsine[4];
     const float q = hairlut_arcsine[0] + z * (hairlut_arcsine[1] + z * (hairlut_arcsine[2] + z * p));
     const float y = r + r * z * q;
-    return copysignf(large ? hairlut_half_pi_high - 2.0f * y : y, h);
+    const float size = large ? hairlut_half_pi_high - 2.0f * y : y;
+    return h < 0.0f ? 0.0f - size : size;
 }
 
 /* A density per rad^2 in (theta, phi) as one per steradian. */

@@ -1,14 +1,26 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The _n functions: the widest kernels that the processor and the operating system run. */
 #include "batch.h"
+#include "cpu.h"
 #include "internal.h"
 
 const hairlut_batch *hairlut_batch_level(int level)
 {
-    return level == 0 ? &hairlut_batch_portable : NULL;
+    if (level == 0)
+        return &hairlut_batch_portable;
+#ifdef HAIRLUT_BATCH_X86
+    if (level == 1 && hairlut_this_cpu() >= HAIRLUT_CPU_AVX2)
+        return &hairlut_batch_avx2;
+    if (level == 2 && hairlut_this_cpu() >= HAIRLUT_CPU_AVX512)
+        return &hairlut_batch_avx512;
+#endif
+#ifdef HAIRLUT_BATCH_NEON
+    if (level == 1)
+        return &hairlut_batch_neon;
+#endif
+    return NULL;
 }
 
-/* A few loads and tests of what the C runtime found out when it started: no state of our own. */
 const hairlut_batch *hairlut_batch_widest(void)
 {
     const hairlut_batch *batch = hairlut_batch_level(0);
@@ -29,16 +41,22 @@ void hairlut_pdf_hair_n(const hairlut_model *model, size_t n, const float *share
     hairlut_batch_widest()->pdf_hair(model, n, shares, theta_r, phi_r, offset, theta_i, phi_i, pdf_angle);
 }
 
+/* The kernels take lobes that there are. */
+static const hairlut_batch *kernels_for(const hairlut_model *model, int lobe)
+{
+    return lobe >= 0 && lobe < model->lobe_count ? hairlut_batch_widest() : &hairlut_batch_portable;
+}
+
 void hairlut_sample_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                            const float *u_theta, const float *u_phi, hairlut_samples out)
 {
-    hairlut_batch_widest()->sample_lobe(model, lobe, n, theta_r, phi_r, u_theta, u_phi, out);
+    kernels_for(model, lobe)->sample_lobe(model, lobe, n, theta_r, phi_r, u_theta, u_phi, out);
 }
 
 void hairlut_pdf_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                         const float *theta_i, const float *phi_i, float *pdf_angle)
 {
-    hairlut_batch_widest()->pdf_lobe(model, lobe, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
+    kernels_for(model, lobe)->pdf_lobe(model, lobe, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
 }
 
 void hairlut_sample_direct_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,

@@ -6,6 +6,12 @@
 #include "hairlut.h"
 #include "platform.h"
 
+#if defined(HAIRLUT_X86)
+#define HAIRLUT_BATCH_X86 1
+#elif defined(HAIRLUT_ARM64)
+#define HAIRLUT_BATCH_NEON 1
+#endif
+
 /* One set of kernels; each member is a function of hairlut.h. */
 typedef struct hairlut_batch {
     const char *name;
@@ -20,6 +26,13 @@ typedef struct hairlut_batch {
 } hairlut_batch;
 
 extern const hairlut_batch hairlut_batch_portable;
+#ifdef HAIRLUT_BATCH_X86
+extern const hairlut_batch hairlut_batch_avx2;
+extern const hairlut_batch hairlut_batch_avx512;
+#endif
+#ifdef HAIRLUT_BATCH_NEON
+extern const hairlut_batch hairlut_batch_neon;
+#endif
 
 /* The sets that this processor runs, narrowest first: index 0 is the portable one. NULL from the number of sets on. */
 const hairlut_batch *hairlut_batch_level(int level);

@@ -5,7 +5,7 @@
 #include "angle.h"
 #include "build.h"
 
-enum { MAX_NODES = 4096 };
+enum { MAX_NODES = 4096, MAX_GRID = 1 << 18 }; /* kernels count the floats of a grid in floats, exact up to 2^24 */
 
 static const float largest_turn = 25.1327419f; /* the float next to 8 pi, above it */
 
@@ -61,6 +61,9 @@ hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lo
         result = validate_nodes("theta_r", desc->theta_r, desc->theta_r_count, -hairlut_two_pi, hairlut_two_pi, message);
     if (result == HAIRLUT_OK)
         result = validate_nodes("offset", desc->offset, desc->offset_count, desc->mirrored ? 0.0f : -1.0f, 1.0f, message);
+    if (result == HAIRLUT_OK && desc->theta_r_count * desc->offset_count > MAX_GRID)
+        result = hairlut_fail(HAIRLUT_ERROR_TABLE, message, "mixture: %d x %d nodes: expected at most %d in all", desc->theta_r_count,
+                              desc->offset_count, (int)MAX_GRID);
     for (int j = 0; result == HAIRLUT_OK && j < desc->theta_r_count; ++j)
         for (int o = 0; result == HAIRLUT_OK && o < desc->offset_count; ++o)
             result = validate_node(desc, lobe_count, j, o, message);
@@ -89,7 +92,7 @@ static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lo
     const double turn = desc->turn ? (double)desc->turn[place(desc, k, j, o)] : 0.0;
     const double next = desc->turn ? (double)desc->turn[place(desc, k, above, o)] : 0.0;
     stored[0] = (float)((desc->share ? (double)desc->share[place(desc, k, j, o)] : 1.0) / sum);
-    stored[1] = (float)shorter_arc(turn);
+    stored[1] = hairlut_wrap((float)shorter_arc(turn), -hairlut_pi);
     stored[2] = (float)shorter_arc(next - turn);
     stored[3] = 0.0f;
 }

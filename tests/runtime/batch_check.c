@@ -1,6 +1,7 @@
-/* Holds every set of batch kernels that this processor runs against the one-direction functions, bit for bit: any n, any
- * alignment, outputs in place of inputs, outputs left out, hard inputs, tables of awkward sizes. Prints the sets, what
- * differs, and a checksum of all results; exits with 1 if anything differs. */
+/* Holds every set of batch kernels that this processor runs against the one-direction functions, bit for bit: single lobes and
+ * the whole hair, any n, any alignment, outputs in place of inputs, outputs and inputs left out, hard inputs, tables of awkward
+ * sizes, mixtures of every shape. Prints the sets, what differs, and a checksum of all results; exits with 1 if anything
+ * differs. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -10,7 +11,7 @@
 #include "batch.h"
 #include "internal.h"
 
-enum { MOST = 700, LONG = 4500, SLACK = 32, ARRAYS = 8 }; /* from 4096 on, samples go on from an aligned vector */
+enum { MOST = 700, SLACK = 32, INPUTS = 6 + HAIRLUT_MAX_LOBES, ARRAYS = INPUTS + 4 };
 
 static const float half_pi = 1.57079637f, two_pi = 6.28318548f;
 static int failures;
@@ -49,254 +50,312 @@ static void add_to_checksum(const float *x, size_t n)
         checksum = (checksum ^ bytes[k]) * 1099511628211u;
 }
 
-/* ---- inputs ---- */
+/* ---- inputs: theta_r, phi_r, u_theta, u_phi, offset, u_lobe, then the shares of each lobe ---- */
 
 static const float hard_angles[] = {0.0f,   -0.0f,        1.57079637f, -1.57079637f, 1.5707964f, -1.6f,    3.14159274f, -3.14159274f,
                                     100.0f, -1e8f,        3e38f,       1e-30f,       7.5f,       INFINITY, -INFINITY,   NAN};
 static const float hard_units[] = {0.0f, -0.0f, 1.0f, 0.5f, 0.50000006f, 0.49999997f, 0.99999994f, 5.96e-8f, 1e-12f, -1.0f, 2.0f, INFINITY, -INFINITY, NAN};
+static const float hard_shares[] = {0.0f, 0.0f, -0.0f, -1.0f, 1e-45f, 1e-38f, 3e38f, 2e38f, 1e30f, INFINITY, -INFINITY, NAN};
 
-/* theta_r, phi_r, u_theta, u_phi; every fifth sample takes hard values */
-static void fill_inputs(float *const in[4], size_t n)
+#define PICK(array) array[random_bits() % (sizeof array / sizeof *array)]
+
+static float inputs[INPUTS][MOST], directions[2][MOST];
+
+/* Every fifth sample takes hard values. */
+static void fill_inputs(size_t n)
 {
     for (size_t i = 0; i < n; ++i) {
         const int hard = i % 5 == 4;
-        in[0][i] = hard ? hard_angles[random_bits() % 16] : (2.0f * random_unit() - 1.0f) * half_pi;
-        in[1][i] = hard ? hard_angles[random_bits() % 16] : (random_unit() - 0.5f) * 20.0f;
-        in[2][i] = hard ? hard_units[random_bits() % 14] : random_unit();
-        in[3][i] = hard ? hard_units[random_bits() % 14] : random_unit();
+        inputs[0][i] = hard ? PICK(hard_angles) : (2.0f * random_unit() - 1.0f) * half_pi;
+        inputs[1][i] = hard ? PICK(hard_angles) : (random_unit() - 0.5f) * 20.0f;
+        inputs[2][i] = hard ? PICK(hard_units) : random_unit();
+        inputs[3][i] = hard ? PICK(hard_units) : random_unit();
+        inputs[4][i] = i % 7 == 3 ? PICK(hard_units) : 2.0f * random_unit() - 1.0f;
+        inputs[5][i] = i % 11 == 10 ? PICK(hard_units) : random_unit();
+        for (int k = 0; k < HAIRLUT_MAX_LOBES; ++k)
+            inputs[6 + k][i] = (i + (size_t)k) % 13 == 6 ? PICK(hard_shares) : random_unit();
     }
 }
 
-/* ---- tables ---- */
+/* Densities are asked for directions that were drawn, and for hard ones. */
+static void make_directions(size_t n, const float *theta_i, const float *phi_i)
+{
+    for (size_t i = 0; i < n; ++i) {
+        directions[0][i] = i % 7 == 6 ? PICK(hard_angles) : theta_i[i];
+        directions[1][i] = i % 7 == 5 ? PICK(hard_angles) : phi_i[i];
+    }
+}
+
+/* ---- models ---- */
 
 static float *make_texels(int width, int height, float low, float high)
 {
-    float *texels = malloc((size_t)(width * height) * sizeof *texels);
+    float *texels = malloc(2 * (size_t)(width * height) * sizeof *texels);
     double *at = malloc((size_t)width * sizeof *at);
     if (!texels || !at)
         exit(2);
     for (int j = 0; j < height; ++j) {
         at[0] = 0.0;
-        for (int i = 1; i < width; ++i) { /* widths over three decades, so that curvature is bounded somewhere */
+        for (int i = 1; i < width; ++i) { /* widths over three decades */
             const double r = random_unit();
             at[i] = at[i - 1] + 0.001 + r * r * r;
         }
-        for (int i = 0; i < width; ++i)
-            texels[j * width + i] = (float)(low + (high - low) * (at[i] / at[width - 1]));
-        texels[j * width] = low;
-        texels[j * width + width - 1] = high;
+        for (int i = 0; i < width; ++i) {
+            const float x = (float)(low + (high - low) * (at[i] / at[width - 1]));
+            texels[2 * (j * width + i)] = i == 0 ? low : i == width - 1 ? high : x;
+            texels[2 * (j * width + i) + 1] = powf(10.0f, 6.0f * random_unit() - 2.0f); /* some are bounded */
+        }
     }
     free(at);
     return texels;
 }
 
-static hairlut_model *make_model(int width, int height, hairlut_warp warp, hairlut_azimuth azimuth)
+static float *make_floats(size_t n, float low, float high, float zero)
 {
-    const float low[3] = {-half_pi, 0.0f, -half_pi}, high[3] = {half_pi, two_pi, half_pi};
-    hairlut_table table[3];
-    for (int k = 0; k < 3; ++k) {
-        const hairlut_table filled = {make_texels(width, height, low[k], high[k]), width, height, -half_pi, half_pi,
-                                      low[k], high[k], warp, 1.0f / 262144.0f, 0.9f};
-        table[k] = filled;
+    float *values = malloc(n * sizeof *values);
+    if (!values)
+        exit(2);
+    for (size_t k = 0; k < n; ++k)
+        values[k] = random_unit() < zero ? 0.0f : low + (high - low) * random_unit();
+    return values;
+}
+
+static float *make_nodes(int count, float low, float high)
+{
+    float *nodes = make_floats((size_t)count, 0.1f, 1.0f, 0.0f);
+    for (int k = 1; k < count; ++k)
+        nodes[k] += nodes[k - 1];
+    const float first = nodes[0], last = nodes[count - 1];
+    for (int k = 0; k < count; ++k)
+        nodes[k] = count == 1 ? 0.5f * (low + high) : k == count - 1 ? high : low + (high - low) * ((nodes[k] - first) / (last - first));
+    return nodes;
+}
+
+/* What a model is made with. `zero` is the fraction of shares that are 0; every third lobe has a uniform azimuth. */
+typedef struct shape {
+    int width, height, lobes, rows, columns, mirrored, turned;
+    float zero;
+} shape;
+
+static hairlut_model *make_model(const shape *s, hairlut_warp warp)
+{
+    hairlut_table tables[2 * HAIRLUT_MAX_LOBES];
+    hairlut_lobe_desc lobes[HAIRLUT_MAX_LOBES];
+    char names[HAIRLUT_MAX_LOBES][8];
+    const size_t nodes = (size_t)(s->rows * s->columns * s->lobes), first = (size_t)(s->rows * s->columns);
+    for (int k = 0; k < 2 * s->lobes; ++k) {
+        const float low = k % 2 ? 0.0f : -half_pi, high = k % 2 ? two_pi : half_pi;
+        const hairlut_table table = {sizeof table, make_texels(s->width, s->height, low, high), s->width, s->height, -half_pi, half_pi,
+                                     low, high, warp, 1.0f / 262144.0f};
+        tables[k] = table;
     }
-    const hairlut_model_desc desc = {table[0], table[1], table[2], azimuth};
+    for (int k = 0; k < s->lobes; ++k) {
+        const hairlut_lobe_desc lobe = {sizeof lobe, names[k], &tables[2 * k], k % 3 == 1 ? NULL : &tables[2 * k + 1],
+                                        k % 2 ? HAIRLUT_AZIMUTH_SUM : HAIRLUT_AZIMUTH_DIFFERENCE};
+        snprintf(names[k], sizeof names[k], "lobe%d", k);
+        lobes[k] = lobe;
+    }
+    float *theta_r = make_nodes(s->rows, -1.5f, 1.5f), *offset = make_nodes(s->columns, s->mirrored ? 0.0f : -1.0f, 1.0f);
+    float *share = make_floats(nodes, 0.1f, 2.0f, s->zero), *turn = make_floats(nodes, -20.0f, 20.0f, 0.0f);
+    for (size_t k = 0; k < first; ++k)
+        share[k] += 0.01f; /* one lobe has a share everywhere */
+    const hairlut_mixture_desc mixture = {sizeof mixture, s->rows, s->columns, theta_r, offset, share, s->turned ? turn : NULL, s->mirrored};
+    const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture};
     hairlut_model *model = NULL;
     char message[HAIRLUT_MESSAGE_SIZE];
     if (hairlut_model_create(&desc, NULL, &model, message) != HAIRLUT_OK) {
         printf("%s\n", message);
         exit(2);
     }
-    for (int k = 0; k < 3; ++k)
-        free((void *)table[k].texels);
+    for (int k = 0; k < 2 * s->lobes; ++k)
+        free((void *)tables[k].texels);
+    free(theta_r), free(offset), free(share), free(turn);
     return model;
 }
 
 /* ---- checks ---- */
 
-typedef hairlut_sample (*sample_one)(const hairlut_model *, float, float, float, float);
-typedef float (*pdf_one)(const hairlut_model *, float, float, float, float);
-typedef void (*sample_many)(const hairlut_model *, size_t, const float *, const float *, const float *, const float *,
-                            hairlut_samples);
-typedef void (*pdf_many)(const hairlut_model *, size_t, const float *, const float *, const float *, const float *, float *);
+static float memory[ARRAYS][MOST * HAIRLUT_MAX_LOBES + SLACK];
+static float expected[4][MOST], expected_pdf[MOST];
 
-typedef struct lobe {
-    const char *name;
-    sample_one sample;
-    pdf_one pdf;
-    sample_many sample_n;
-    pdf_many pdf_n;
-} lobe;
+/* A call of one of the four functions of a set, on arrays placed somewhere. */
+typedef struct call {
+    const hairlut_batch *batch;
+    const hairlut_model *model;
+    int lobe; /* -1: the whole hair */
+    int has_shares, has_offset;
+    size_t n;
+} call;
 
-static float memory[ARRAYS][LONG + SLACK];
-static float expected[4][LONG], expected_pdf[LONG], inputs[4][LONG];
-
-/* Eight arrays, each with an alignment of its own, and a canary after its n floats. */
-static void place_arrays(float *arrays[ARRAYS], size_t n)
+static float *place_array(int k, const float *from, size_t n)
 {
-    for (int k = 0; k < ARRAYS; ++k) {
-        arrays[k] = memory[k] + random_bits() % 16;
-        arrays[k][n] = 12345.0f;
+    float *array = memory[k] + random_bits() % 16;
+    memcpy(array, from, n * sizeof *array);
+    array[n] = 12345.0f;
+    return array;
+}
+
+static void check_canary(const call *c, const float *array, size_t n)
+{
+    if (array[n] != 12345.0f)
+        fail("written beyond the end", c->batch->name, n, n, 12345.0f, array[n]);
+}
+
+/* The shares of all lobes side by side, as the caller passes them; NULL if there are none. */
+static float *place_shares(const call *c)
+{
+    static float together[MOST * HAIRLUT_MAX_LOBES];
+    const size_t n = c->n, lobes = (size_t)hairlut_lobe_count(c->model);
+    for (size_t k = 0; k < lobes; ++k)
+        memcpy(together + k * n, inputs[6 + k], n * sizeof *together);
+    return c->has_shares ? place_array(6, together, n * lobes) : NULL;
+}
+
+static void one_sample(const call *c, size_t i, float shares[HAIRLUT_MAX_LOBES])
+{
+    float(*in)[MOST] = inputs;
+    const float offset = c->has_offset ? in[4][i] : 0.0f;
+    const hairlut_sample s =
+        c->lobe >= 0 ? hairlut_sample_lobe(c->model, c->lobe, in[0][i], in[1][i], in[2][i], in[3][i])
+                     : hairlut_sample_hair(c->model, shares, in[0][i], in[1][i], offset, in[5][i], in[2][i], in[3][i]);
+    const float fields[4] = {s.theta_i, s.phi_i, s.pdf_angle, s.pdf_solid_angle};
+    for (int k = 0; k < 4; ++k)
+        expected[k][i] = fields[k];
+}
+
+static void one_pdf(const call *c, size_t i, float shares[HAIRLUT_MAX_LOBES])
+{
+    float(*in)[MOST] = inputs;
+    const float offset = c->has_offset ? in[4][i] : 0.0f;
+    expected_pdf[i] = c->lobe >= 0 ? hairlut_pdf_lobe(c->model, c->lobe, in[0][i], in[1][i], directions[0][i], directions[1][i])
+                                   : hairlut_pdf_hair(c->model, shares, in[0][i], in[1][i], offset, directions[0][i], directions[1][i]);
+}
+
+static void one_by_one(const call *c, void (*one)(const call *, size_t, float *))
+{
+    float shares[HAIRLUT_MAX_LOBES];
+    for (size_t i = 0; i < c->n; ++i) {
+        for (int k = 0; k < HAIRLUT_MAX_LOBES; ++k)
+            shares[k] = inputs[6 + k][i];
+        one(c, i, c->has_shares ? shares : NULL);
     }
 }
 
-static void check_canaries(float *const arrays[ARRAYS], const char *set, size_t n)
+static void sample(const call *c, float *const a[6], const float *shares, hairlut_samples out)
 {
-    for (int k = 0; k < ARRAYS; ++k)
-        if (arrays[k][n] != 12345.0f)
-            fail("written beyond the end", set, n, n, 12345.0f, arrays[k][n]);
+    if (c->lobe >= 0)
+        c->batch->sample_lobe(c->model, c->lobe, c->n, a[0], a[1], a[2], a[3], out);
+    else
+        c->batch->sample_hair(c->model, c->n, shares, a[0], a[1], c->has_offset ? a[4] : NULL, a[5], a[2], a[3], out);
 }
 
-static void restore_inputs(float *const arrays[ARRAYS], size_t n)
+static void pdf(const call *c, float *const a[6], const float *shares, float *out)
 {
-    for (int k = 0; k < 4; ++k)
-        memcpy(arrays[k], inputs[k], n * sizeof(float));
+    if (c->lobe >= 0)
+        c->batch->pdf_lobe(c->model, c->lobe, c->n, a[0], a[1], a[2], a[3], out);
+    else
+        c->batch->pdf_hair(c->model, c->n, shares, a[0], a[1], c->has_offset ? a[4] : NULL, a[2], a[3], out);
 }
 
-static void check_sample(const lobe *l, const char *set, const hairlut_model *model, size_t n)
+static void check_sample(const call *c)
 {
     static const char *const names[4] = {"theta_i", "phi_i", "pdf_angle", "pdf_solid_angle"};
-    float *a[ARRAYS];
-    place_arrays(a, n);
-    restore_inputs(a, n);
-    const hairlut_samples apart = {a[4], a[5], a[6], a[7]};
-    l->sample_n(model, n, a[0], a[1], a[2], a[3], apart);
-    for (int k = 0; k < 4; ++k) {
-        compare(names[k], set, n, expected[k], a[4 + k]);
-        compare("an input changed", set, 0, inputs[k], a[k]);
-    }
-    const int shift = (int)(random_bits() % 4); /* each output in place of some input */
-    float *const to[4] = {a[shift], a[(shift + 1) % 4], a[(shift + 2) % 4], a[(shift + 3) % 4]};
+    const size_t n = c->n;
+    float *a[6], *out[4], *shares = place_shares(c);
+    for (int k = 0; k < 6; ++k)
+        a[k] = place_array(k, inputs[k], n);
+    for (int k = 0; k < 4; ++k)
+        out[k] = place_array(INPUTS + k, inputs[0], n);
+    const hairlut_samples apart = {out[0], out[1], out[2], out[3]}, angles_only = {out[0], out[1], NULL, NULL};
+    sample(c, a, shares, apart);
+    for (int k = 0; k < 4; ++k)
+        compare(names[k], c->batch->name, n, expected[k], out[k]);
+    for (int k = 0; k < 6; ++k)
+        if (memcmp(a[k], inputs[k], n * sizeof *a[k]) != 0)
+            fail("an input changed", c->batch->name, n, 0, inputs[k][0], a[k][0]);
+    sample(c, a, shares, angles_only);
+    compare("theta_i alone", c->batch->name, n, expected[0], out[0]);
+    compare("phi_i alone", c->batch->name, n, expected[1], out[1]);
+    const unsigned shift = random_bits() % 6; /* each output in place of some input */
+    float *const to[4] = {a[shift], a[(shift + 1) % 6], a[(shift + 2) % 6], shares ? shares : a[(shift + 3) % 6]};
     const hairlut_samples in_place = {to[0], to[1], to[2], to[3]};
-    l->sample_n(model, n, a[0], a[1], a[2], a[3], in_place);
+    sample(c, a, shares, in_place);
     for (int k = 0; k < 4; ++k)
-        compare(names[k], set, n, expected[k], to[k]);
-    restore_inputs(a, n);
-    const hairlut_samples angles_only = {a[4], a[5], NULL, NULL};
-    l->sample_n(model, n, a[0], a[1], a[2], a[3], angles_only);
-    compare("theta_i alone", set, n, expected[0], a[4]);
-    compare("phi_i alone", set, n, expected[1], a[5]);
-    check_canaries(a, set, n);
-}
-
-static void check_pdf(const lobe *l, const char *set, const hairlut_model *model, size_t n)
-{
-    float *a[ARRAYS];
-    place_arrays(a, n);
-    restore_inputs(a, n);
-    l->pdf_n(model, n, a[0], a[1], a[2], a[3], a[4]);
-    compare("pdf", set, n, expected_pdf, a[4]);
-    float *const to = a[random_bits() % 4];
-    l->pdf_n(model, n, a[0], a[1], a[2], a[3], to);
-    compare("pdf in place", set, n, expected_pdf, to);
-    check_canaries(a, set, n);
-}
-
-/* Densities are asked for directions that were drawn, and for hard ones. */
-static void make_directions(size_t n)
-{
-    for (size_t i = 0; i < n; ++i) {
-        inputs[2][i] = i % 7 == 6 ? hard_angles[random_bits() % 16] : expected[0][i];
-        inputs[3][i] = i % 7 == 5 ? hard_angles[random_bits() % 16] : expected[1][i];
-    }
-}
-
-static void check_model(const lobe *l, const char *set, const hairlut_model *model, size_t n)
-{
-    float *const in[4] = {inputs[0], inputs[1], inputs[2], inputs[3]};
-    fill_inputs(in, n);
-    for (size_t i = 0; i < n; ++i) {
-        const hairlut_sample s = l->sample(model, in[0][i], in[1][i], in[2][i], in[3][i]);
-        const float fields[4] = {s.theta_i, s.phi_i, s.pdf_angle, s.pdf_solid_angle};
-        for (int k = 0; k < 4; ++k)
-            expected[k][i] = fields[k];
-    }
-    check_sample(l, set, model, n);
-    make_directions(n);
-    for (size_t i = 0; i < n; ++i)
-        expected_pdf[i] = l->pdf(model, in[0][i], in[1][i], in[2][i], in[3][i]);
-    check_pdf(l, set, model, n);
+        compare(names[k], c->batch->name, n, expected[k], to[k]);
     for (int k = 0; k < 4; ++k)
-        add_to_checksum(expected[k], n);
-    add_to_checksum(expected_pdf, n);
+        check_canary(c, out[k], n);
+    for (int k = 0; k < 6; ++k)
+        check_canary(c, a[k], n);
 }
 
-static void check_set(const hairlut_batch *batch, const hairlut_model *model, size_t most)
+static void check_pdf(const call *c)
 {
-    const lobe lobes[2] = {
-        {"direct", hairlut_sample_direct, hairlut_pdf_direct, batch->sample_direct, batch->pdf_direct},
-        {"multiple", hairlut_sample_multiple, hairlut_pdf_multiple, batch->sample_multiple, batch->pdf_multiple}};
-    for (int k = 0; k < 2; ++k) {
-        for (size_t n = 0; n <= most; ++n)
-            check_model(&lobes[k], batch->name, model, n);
-        check_model(&lobes[k], batch->name, model, MOST);
-    }
+    const size_t n = c->n;
+    float *a[6], *out = place_array(INPUTS, inputs[0], n), *shares = place_shares(c);
+    for (int k = 0; k < 6; ++k)
+        a[k] = place_array(k, k == 2 ? directions[0] : k == 3 ? directions[1] : inputs[k], n);
+    pdf(c, a, shares, out);
+    compare("pdf", c->batch->name, n, expected_pdf, out);
+    float *const to = shares && random_bits() % 4 == 0 ? shares : a[random_bits() % 5];
+    pdf(c, a, shares, to);
+    compare("pdf in place", c->batch->name, n, expected_pdf, to);
+    check_canary(c, out, n);
 }
 
-/* Arrays so long that their alignment is seen to, at eight of them */
-static void check_long(const hairlut_batch *batch, const hairlut_model *model)
+static void check_call(const call *c)
 {
-    const lobe direct = {"direct", hairlut_sample_direct, hairlut_pdf_direct, batch->sample_direct, batch->pdf_direct};
-    for (size_t k = 0; k < 8; ++k)
-        check_model(&direct, batch->name, model, LONG - k);
-}
-
-/* The mixture's _n functions are put together from the public kernels: checked once. */
-static void check_mixture(const hairlut_model *model, size_t n)
-{
-    float *const in[4] = {inputs[0], inputs[1], inputs[2], inputs[3]};
-    float weight[MOST], u_lobe[MOST], got[4][MOST], pdf[MOST];
-    const hairlut_samples out = {got[0], got[1], got[2], got[3]};
-    fill_inputs(in, n);
-    for (size_t i = 0; i < n; ++i) {
-        weight[i] = i % 9 == 8 ? hard_units[random_bits() % 14] : random_unit();
-        u_lobe[i] = i % 11 == 10 ? hard_units[random_bits() % 14] : random_unit();
-        const hairlut_sample s = hairlut_sample_mixture(model, weight[i], in[0][i], in[1][i], u_lobe[i], in[2][i], in[3][i]);
-        const float fields[4] = {s.theta_i, s.phi_i, s.pdf_angle, s.pdf_solid_angle};
-        for (int k = 0; k < 4; ++k)
-            expected[k][i] = fields[k];
-    }
-    hairlut_sample_mixture_n(model, n, weight, in[0], in[1], u_lobe, in[2], in[3], out);
+    fill_inputs(c->n);
+    one_by_one(c, one_sample);
+    check_sample(c);
+    make_directions(c->n, expected[0], expected[1]);
+    one_by_one(c, one_pdf);
+    check_pdf(c);
     for (int k = 0; k < 4; ++k)
-        compare("mixture sample", "public", n, expected[k], got[k]);
-    const hairlut_samples in_place = {weight, u_lobe, NULL, NULL};
-    make_directions(n);
-    for (size_t i = 0; i < n; ++i)
-        expected_pdf[i] = hairlut_pdf_mixture(model, weight[i], in[0][i], in[1][i], in[2][i], in[3][i]);
-    hairlut_pdf_mixture_n(model, n, weight, in[0], in[1], in[2], in[3], pdf);
-    compare("mixture pdf", "public", n, expected_pdf, pdf);
-    fill_inputs(in, n);
-    hairlut_sample_mixture_n(model, n, weight, in[0], in[1], u_lobe, in[2], in[3], out);
-    hairlut_sample_mixture_n(model, n, weight, in[0], in[1], u_lobe, in[2], in[3], in_place);
-    compare("mixture in place", "public", n, got[0], weight);
-    compare("mixture in place", "public", n, got[1], u_lobe);
+        add_to_checksum(expected[k], c->n);
+    add_to_checksum(expected_pdf, c->n);
+}
+
+static void check_model(const hairlut_batch *batch, const hairlut_model *model, size_t most)
+{
+    for (int lobe = -1; lobe < hairlut_lobe_count(model) && lobe < 2; ++lobe)
+        for (size_t n = 0; n <= most + 1; ++n) {
+            const int has_shares = (int)(n % 3 == 1), has_offset = (int)(n % 4 != 2);
+            const call c = {batch, model, lobe, has_shares, has_offset, n <= most ? n : MOST};
+            check_call(&c);
+        }
+}
+
+static void check_shapes(const hairlut_batch *batch)
+{
+    static const shape shapes[] = {
+        {4, 2, 1, 1, 1, 0, 0, 0.0f},    {5, 3, 2, 1, 1, 0, 1, 0.0f},     {6, 2, 3, 1, 1, 1, 0, 0.0f},      {17, 5, 4, 5, 1, 0, 1, 0.3f},
+        {18, 4, 2, 1, 7, 1, 1, 0.0f},   {19, 3, 16, 3, 4, 1, 1, 0.6f},   {33, 7, 5, 9, 9, 0, 1, 0.2f},     {64, 9, 3, 70, 3, 1, 1, 0.0f},
+        {65, 3, 2, 2, 66, 0, 1, 0.0f},  {66, 3, 2, 64, 65, 1, 0, 0.5f},  {67, 4, 1, 2, 2, 1, 1, 0.0f},     {68, 5, 2, 1, 1, 0, 0, 0.0f},
+        {69, 3, 3, 2, 1, 0, 0, 0.5f},   {70, 4, 2, 1, 2, 1, 0, 0.0f},    {73, 3, 2, 1, 1, 0, 0, 0.0f},     {74, 3, 2, 1, 1, 0, 0, 0.0f},
+        {127, 5, 2, 4, 4, 0, 1, 0.1f},  {256, 4, 2, 1, 1, 1, 1, 0.0f},   {257, 3, 2, 1, 1, 0, 0, 0.0f},    {258, 3, 3, 3, 3, 1, 1, 0.3f},
+        {300, 4, 2, 1, 1, 0, 0, 0.0f},  {514, 3, 2, 1, 1, 0, 0, 0.0f},   {1025, 2, 2, 1, 1, 0, 0, 0.0f},   {4096, 2, 2, 1, 1, 0, 0, 0.0f},
+    };
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; ++k) {
+        hairlut_model *model = make_model(&shapes[k], k % 4 == 3 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES);
+        check_model(batch, model, 20);
+        hairlut_free(model);
+    }
 }
 
 int main(void)
 {
-    static const int sizes[][2] = {{4, 2},  {5, 3},   {6, 2},   {17, 5},  {18, 4},  {19, 3},  {33, 7},  {64, 9},   {65, 3},
-                                   {66, 3}, {67, 4},  {68, 5},  {69, 3},  {70, 4},  {81, 3},  {127, 5}, {256, 4},  {257, 3},
-                                   {258, 3}, {259, 5}, {300, 4}, {514, 3}, {1025, 2}, {1100, 3}, {4096, 2}};
-    const hairlut_batch public_set = {"public", hairlut_sample_direct_n, hairlut_sample_multiple_n, hairlut_pdf_direct_n,
-                                      hairlut_pdf_multiple_n};
+    const hairlut_batch public_set = {"public", hairlut_sample_lobe_n, hairlut_pdf_lobe_n, hairlut_sample_hair_n, hairlut_pdf_hair_n};
     const hairlut_batch *sets[8] = {&public_set};
     int count = 1;
     for (int level = 0; hairlut_batch_level(level); ++level)
         sets[count++] = hairlut_batch_level(level);
-    for (size_t n = 0; n <= 300; ++n)
-        check_mixture(hairlut_builtin(n % 2 ? "printed" : "fitted"), n);
     for (int s = 0; s < count; ++s) {
         printf("set %s\n", sets[s]->name);
         state = 1; /* each set sees the same inputs */
         checksum = 14695981039346656037u;
-        check_set(sets[s], hairlut_builtin("printed"), 200);
-        check_set(sets[s], hairlut_builtin("fitted"), 200);
-        check_long(sets[s], hairlut_builtin("fitted"));
-        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k) {
-            hairlut_model *model = make_model(sizes[k][0], sizes[k][1], k % 4 == 3 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES,
-                                              k % 2 ? HAIRLUT_AZIMUTH_SUM : HAIRLUT_AZIMUTH_DIFFERENCE);
-            check_set(sets[s], model, 20);
-            hairlut_free(model);
-        }
+        check_model(sets[s], hairlut_builtin("printed"), 200);
+        check_model(sets[s], hairlut_builtin("fitted"), 200);
+        check_shapes(sets[s]);
         printf("checksum %016llx\n", (unsigned long long)checksum);
     }
     return failures != 0;

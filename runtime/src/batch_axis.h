@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* An axis for a block of samples or directions: axis.h, operation by operation, in passes over the block. */
+#ifndef HAIRLUT_BATCH_AXIS_H
+#define HAIRLUT_BATCH_AXIS_H
+
+#include "axis.h"
+#include "batch.h"
+
+/* Samples a pass; the arrays of a block have room for a vector more, which a group that ends within it writes. */
+enum { BLOCK = 128, ROOM = BLOCK + LANES };
+
+/* Before a loop over single samples: less of it is counting. clang does so by itself. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define HAIRLUT_UNROLLED _Pragma("GCC unroll 4")
+#else
+#define HAIRLUT_UNROLLED
+#endif
+
+#ifndef HAIRLUT_COUNT
+#define HAIRLUT_COUNT hairlut_count
+#endif
+
+/* Samples on an axis. What a pass no longer needs makes room for what it finds: all of it is to stay in the first-level cache,
+ * beside the table. */
+typedef struct draws {
+    int at[BLOCK];     /* the offset of the cell */
+    int knot[BLOCK];   /* the offset of its knot */
+    float t[BLOCK];    /* the weight of the row above; from fetch_draws on: the blended cell's w */
+    float m[BLOCK];    /* of hairlut_place; from fetch_draws on: (m - u0) / h */
+    float x0[BLOCK];   /* of the blended cell, as d0 and d1 */
+    float d0[BLOCK];
+    float d1[BLOCK];
+    float rate[BLOCK]; /* 1 / h */
+} draws;
+
+/* Directions on an axis. */
+typedef struct searches {
+    int j[BLOCK];      /* the row */
+    int cell[BLOCK];   /* as far as it is known, counted from the low end */
+    int at[BLOCK];     /* where to read on: an offset among the rows, then among the cells */
+    int knot[BLOCK];   /* the offset of the cell's knot */
+    float t[BLOCK];    /* the weight of the row above; from fetch_searches on: the blended cell's w, scaled as d0 and d1 */
+    float x[BLOCK];    /* the angle; from fetch_searches on: scaled, less the blended cell's x0 */
+    float d0[BLOCK];
+    float d1[BLOCK];
+    float width[BLOCK]; /* h, scaled */
+} searches;
+
+typedef struct cells {
+    real x0, d0, w, d1;
+} cells;
+
+static inline real clamp(real x, real low, real high)
+{
+    return smaller(larger(x, low), high);
+}
+
+/* hairlut_axis_row */
+static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
+{
+    const real scaled = mul(sub(theta_r, all(axis->row_origin)), all(axis->row_scale));
+    const real r = clamp(scaled, all(0.0f), all(axis->row_last));
+    const whole j = truncated(r);
+    *t = sub(r, converted(j));
+    return j;
+}
+
+/* The offset of cell i, counted from an end, of row j. */
+static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
+{
+    const whole cell = imul(i, iall(axis->pitch));
+    const whole half = iwhere(high, iall((int)(axis->ends[1] - axis->ends[0])));
+    return iadd(iadd(cell, half), imul(j, iall(HAIRLUT_CELL)));
+}
+
+/* hairlut_axis_place, and where to read */
+static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, draws *q)
+{
+    for (size_t s = 0; s < n; s += LANES) {
+        real t;
+        const real number = load(u + s);
+        const whole j = find_row(axis, load(theta_r + s), &t);
+        const real m = larger(smaller(number, sub(all(1.0f), number)), all(0.0f));
+        const real y = axis->warp == HAIRLUT_WARP_OCTAVES ? shifted(add(m, all(axis->e))) : m;
+        const whole i = truncated(sub(mul(y, all(axis->scale)), all(axis->origin)));
+        istore(q->at + s, cell_offset(axis, j, i, greater(number, all(0.5f))));
+        istore(q->knot + s, imul(i, iall(HAIRLUT_KNOT)));
+        store(q->t + s, t);
+        store(q->m + s, m);
+    }
+}
+
+/* hairlut_count, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0 */
+HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t n, const searches *q, int size, int *counts)
+{
+    const float *above = groups + (size == HAIRLUT_SMALL_GROUP ? HAIRLUT_SMALL_GROUP : axis->stride);
+#ifdef HAIRLUT_COUNTS
+    for (size_t s = 0; s < n; s += LANES)
+        istore(counts + s, HAIRLUT_COUNTS(groups, above, q->at + s, q->t + s, q->x + s, size));
+#else
+    HAIRLUT_UNROLLED
+    for (size_t k = 0; k < n; ++k)
+        counts[k] = HAIRLUT_COUNT(groups + q->at[k], above + q->at[k], q->t[k], q->x[k], size);
+#endif
+}
+
+/* hairlut_axis_begin_search with groups of `size`: the first cell of the block, and the offset of its first group */
+HAIRLUT_INLINE void search_blocks(const hairlut_axis *axis, size_t n, searches *q, int size)
+{
+    const int step = axis->step, floats = HAIRLUT_LINE / size * step; /* of a block */
+    count(axis, axis->rows, n, q, size, q->cell);
+    for (size_t s = 0; s < n; s += LANES) {
+        const whole block = iload(q->cell + s);
+        istore(q->cell + s, imul(block, iall(step)));
+        istore(q->at + s, iadd(iload(q->at + s), imul(block, iall(floats))));
+    }
+}
+
+/* hairlut_halve */
+static inline void halve_blocks(const hairlut_axis *axis, size_t n, searches *q)
+{
+    const float *groups = axis->rows + HAIRLUT_LINE;
+    for (size_t k = 0; axis->step > HAIRLUT_GROUP && k < n; ++k) {
+        const int halved = hairlut_halve(groups + q->at[k], axis->stride, q->t[k], q->x[k], axis->step);
+        q->cell[k] += halved;
+        q->at[k] += halved;
+    }
+}
+
+/* hairlut_axis_end_search from the count on, and where to read the cell: hairlut_axis_nearer */
+HAIRLUT_INLINE void search_groups(const hairlut_axis *axis, size_t n, searches *q, int size)
+{
+    int counts[BLOCK];
+    count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
+    for (size_t s = 0; s < n; s += LANES) {
+        const whole cell = iadd(iload(q->cell + s), iload(counts + s)), mirrored = isub(iall(axis->columns - 2), cell);
+        const whole i = ismaller(cell, mirrored);
+        istore(q->at + s, cell_offset(axis, iload(q->j + s), i, igreater(cell, mirrored)));
+        istore(q->knot + s, imul(i, iall(HAIRLUT_KNOT)));
+    }
+}
+
+static inline void search_large(const hairlut_axis *axis, size_t n, searches *q)
+{
+    search_blocks(axis, n, q, HAIRLUT_GROUP);
+    halve_blocks(axis, n, q);
+    search_groups(axis, n, q, HAIRLUT_GROUP);
+}
+
+/* Three passes that sort what they load for single samples gain nothing from more than eight lanes (tests/bench/NOTES.md): the
+ * kernels in AVX-512, whose processors all have AVX2, call those in AVX2. */
+#ifdef HAIRLUT_BATCH_X86
+void hairlut_fetch_draws_avx2(const hairlut_axis *axis, size_t n, draws *q);
+void hairlut_search_small_avx2(const hairlut_axis *axis, size_t n, searches *q);
+void hairlut_fetch_searches_avx2(const hairlut_axis *axis, size_t n, searches *q);
+#endif
+
+#ifdef HAIRLUT_CELLS_BY_AVX2
+#define fetch_draws hairlut_fetch_draws_avx2
+#define search_small hairlut_search_small_avx2
+#define fetch_searches hairlut_fetch_searches_avx2
+#else
+/* hairlut_axis_cell */
+static inline cells load_cells(const hairlut_axis *axis, const int *at, real below, real above)
+{
+    real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
+    gather4(axis->ends[0], at, p);
+    gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
+    const cells cell = {add(mul(below, p[0]), mul(above, q[0])), add(mul(below, p[1]), mul(above, q[1])),
+                        add(mul(below, p[2]), mul(above, q[2])), add(mul(below, p[3]), mul(above, q[3]))};
+    return cell;
+}
+
+static inline void fetch_draws(const hairlut_axis *axis, size_t n, draws *q)
+{
+    for (size_t s = 0; s < n; s += LANES) {
+        real knot[HAIRLUT_KNOT];
+        const real t = load(q->t + s);
+        const cells cell = load_cells(axis, q->at + s, sub(all(1.0f), t), t);
+        gather4(axis->knots, q->knot + s, knot);
+        store(q->m + s, mul(sub(load(q->m + s), knot[0]), knot[1]));
+        store(q->rate + s, knot[1]);
+        store(q->x0 + s, cell.x0);
+        store(q->d0 + s, cell.d0);
+        store(q->t + s, cell.w);
+        store(q->d1 + s, cell.d1);
+    }
+}
+
+static inline void search_small(const hairlut_axis *axis, size_t n, searches *q)
+{
+    search_blocks(axis, n, q, HAIRLUT_SMALL_GROUP);
+    search_groups(axis, n, q, HAIRLUT_SMALL_GROUP);
+}
+
+static inline void fetch_searches(const hairlut_axis *axis, size_t n, searches *q)
+{
+    for (size_t s = 0; s < n; s += LANES) {
+        real knot[HAIRLUT_KNOT];
+        const real t = load(q->t + s), scale = all(HAIRLUT_SCALE);
+        const cells cell = load_cells(axis, q->at + s, mul(scale, sub(all(1.0f), t)), mul(scale, t));
+        gather4(axis->knots, q->knot + s, knot);
+        store(q->x + s, sub(mul(scale, load(q->x + s)), cell.x0));
+        store(q->width + s, knot[2]);
+        store(q->d0 + s, cell.d0);
+        store(q->t + s, cell.w);
+        store(q->d1 + s, cell.d1);
+    }
+}
+#endif
+
+/* hairlut_axis_sample, not moved into the domain, of samples s .. s+LANES-1 that were placed and fetched */
+static inline real draw(const draws *q, size_t s, real *slope)
+{
+    const real along = load(q->m + s), w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s);
+    const real xi = larger(along, all(0.0f)), rest = larger(sub(all(1.0f), along), all(0.0f));
+    const real xi2 = mul(xi, xi), rest2 = mul(rest, rest), p = mul(xi, rest);
+    const real ratio = over(w, add(mul(w, add(xi2, rest2)), mul(add(d0, d1), p)));
+    const real bent = add(add(mul(d1, xi2), mul(mul(all(2.0f), w), p)), mul(d0, rest2));
+    *slope = magnitude(mul(mul(mul(ratio, ratio), bent), load(q->rate + s)));
+    return add(load(q->x0 + s), mul(ratio, add(mul(w, xi2), mul(d0, p))));
+}
+
+/* hairlut_axis_begin_search, but for the count. Returns hairlut_axis_contains. */
+static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, searches *q, size_t s)
+{
+    const real low = all(axis->low), high = all(axis->high);
+    real t;
+    const whole j = find_row(axis, theta_r, &t);
+    istore(q->j + s, j);
+    istore(q->at + s, imul(j, iall(axis->stride)));
+    store(q->t + s, t);
+    store(q->x + s, clamp(x, low, high));
+    return both(at_least(x, low), at_least(high, x));
+}
+
+/* The rest of the search, and the cells. */
+static inline void end_search(const hairlut_axis *axis, size_t n, searches *q)
+{
+    if (HAIRLUT_IS_SMALL(axis->columns))
+        search_small(axis, n, q);
+    else
+        search_large(axis, n, q);
+    fetch_searches(axis, n, q);
+}
+
+/* hairlut_axis_inverse from the blended cell on: bend and root of directions s .. s+LANES-1 */
+static inline real inverse(const searches *q, size_t s, real *root_of)
+{
+    const real w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), from = load(q->x + s), to = sub(w, from);
+    const real wx = larger(mul(w, from), all(0.0f)), wz = larger(mul(w, to), all(0.0f));
+    const real balance = sub(mul(d0, to), mul(d1, from));
+    *root_of = root(add(mul(balance, balance), mul(all(4.0f), mul(wx, wz))));
+    const real sum = add(*root_of, magnitude(balance));
+    const mask rising = at_least(balance, all(0.0f));
+    const real a = choose(rising, mul(all(2.0f), wx), sum), b = choose(rising, sum, mul(all(2.0f), wz));
+    const real unit = over(all(1.0f), add(a, b)), xi = mul(a, unit), rest = mul(b, unit);
+    const real bend = add(mul(w, add(mul(xi, xi), mul(rest, rest))), mul(add(d0, d1), mul(xi, rest)));
+    return mul(load(q->width + s), magnitude(bend));
+}
+
+#endif

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The whole hair for a block: hair.c, operation by operation.
+ *
+ * The samples of a block are sorted by the lobe that they draw. Each lobe then draws for a range of its own, and the densities
+ * of the others are those of the rest: what lies before the range and behind it. Densities of a lobe that some samples have no
+ * share of are computed for a list of those that have. */
+#ifndef HAIRLUT_BATCH_HAIR_H
+#define HAIRLUT_BATCH_HAIR_H
+
+#include "batch_lobe.h"
+#include "batch_mixture.h"
+
+/* A block's inputs. shares and offset may be NULL. */
+typedef struct hair_inputs {
+    given_shares given;
+    const float *theta_r, *phi_r, *offset;
+    const float *u_lobe, *u_theta, *u_phi; /* of samples */
+    const float *theta_i, *phi_i;          /* of directions */
+} hair_inputs;
+
+/* Directions whose density is asked for, and what they are seen from. r and i are phi_r and phi_i in [-pi, pi). */
+typedef struct directions {
+    float theta_r[ROOM], r[ROOM], theta_i[ROOM], i[ROOM];
+} directions;
+
+static inline size_t whole_vectors(size_t n)
+{
+    return (n + LANES - 1) / LANES * LANES;
+}
+
+/* hairlut_turned_relative, of samples s .. s+LANES-1 */
+static inline real turned_relative(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t s)
+{
+    const hairlut_mixture *mixture = &model->mixture;
+    const real relative = relative_azimuth(model->lobes[k].azimuth, load(d->r + s), load(d->i + s));
+    if (!mixture->turned && !mixture->mirrored)
+        return relative;
+    const real turn = mixture->turned ? load(m->turn[k] + s) : all(0.0f);
+    return wrap(sub(mul(load(m->side + s), relative), turn), 0.0f);
+}
+
+/* The density of lobe k of directions from .. from+n-1, to the same places of pdf. What is written beyond, up to a whole vector,
+ * is a density too. */
+static inline void range_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t from, size_t n, float *pdf)
+{
+    float azimuth[BLOCK];
+    const size_t padded = whole_vectors(n);
+    for (size_t s = 0; s < padded && !model->lobes[k].uniform; s += LANES)
+        store(azimuth + s, turned_relative(model, k, d, m, from + s));
+    lobe_density(&model->lobes[k], padded, d->theta_r + from, d->theta_i + from, azimuth, pdf + from);
+}
+
+/* The same of those of the first n that have a share of the lobe and drew another one; 0 for the others. */
+static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t n, float *pdf)
+{
+    float azimuth[ROOM], theta_r[BLOCK], theta_i[BLOCK], asked[BLOCK], density[BLOCK];
+    int list[BLOCK];
+    size_t count = 0;
+    for (size_t s = 0; s < n; s += LANES)
+        store(azimuth + s, model->lobes[k].uniform ? all(0.0f) : turned_relative(model, k, d, m, s));
+    for (size_t s = 0; s < n; ++s) {
+        list[count] = (int)s;
+        count += m->weight[k][s] > 0.0f && m->chosen[s] != (float)k;
+        pdf[s] = 0.0f;
+    }
+    const size_t padded = whole_vectors(count);
+    for (size_t s = 0; s < padded; ++s) {
+        const int from = s < count ? list[s] : list[0];
+        theta_r[s] = d->theta_r[from];
+        theta_i[s] = d->theta_i[from];
+        asked[s] = azimuth[from];
+    }
+    lobe_density(&model->lobes[k], padded, theta_r, theta_i, asked, density);
+    for (size_t s = 0; s < count; ++s)
+        pdf[list[s]] = density[s];
+}
+
+/* The lobes' ranges of sorted samples: lobe k's are first[k] .. first[k+1]-1. */
+typedef struct ranges {
+    size_t first[HAIRLUT_MAX_LOBES + 1];
+} ranges;
+
+/* Adds weight * density over the lobes to sum. Those that drew a lobe have its density in `drawn`; NULL: none drew any. */
+static inline void add_densities(const hairlut_model *model, const directions *d, const mixes *m, size_t n, const ranges *own,
+                                 const float *drawn, float *sum)
+{
+    float pdf[ROOM];
+    for (size_t s = 0; s < n; s += LANES)
+        store(sum + s, all(0.0f));
+    for (int k = 0; k < model->lobe_count; ++k) {
+        const size_t from = own ? own->first[k] : 0, to = own ? own->first[k + 1] : 0;
+        if (!m->some[k])
+            continue;
+        if (!m->every[k]) {
+            list_density(model, k, d, m, n, pdf);
+        } else {
+            if (from > 0)
+                range_density(model, k, d, m, 0, from, pdf);
+            if (to < n)
+                range_density(model, k, d, m, to, n - to, pdf);
+        }
+        for (size_t s = from; s < to; ++s)
+            pdf[s] = drawn[s];
+        for (size_t s = 0; s < n; s += LANES)
+            store(sum + s, add(load(sum + s), mul(load(m->weight[k] + s), load(pdf + s))));
+    }
+}
+
+/* What a group of whole vectors reads beyond the end of a block. */
+static inline void end_directions(directions *d, mixes *m, size_t n)
+{
+    store(d->theta_r + n, all(0.0f));
+    store(d->r + n, all(0.0f));
+    store(d->theta_i + n, all(0.0f));
+    store(d->i + n, all(0.0f));
+    store(m->side + n, all(0.0f));
+}
+
+/* hairlut_pdf_hair */
+static inline void pdf_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, float *out)
+{
+    directions d;
+    mixes m;
+    float sum[BLOCK];
+    end_directions(&d, &m, n);
+    for (size_t s = 0; s < n; s += LANES) {
+        const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), theta_i = load(in->theta_i + s);
+        const real phi_i = load(in->phi_i + s), offset = in->offset ? load(in->offset + s) : all(0.0f);
+        const mask wanted = both(both(known(theta_r, phi_r, theta_i, phi_i), finite(phi_i)), numbers(offset, offset));
+        mix_at(model, in->given, theta_r, offset, wanted, all(0.0f), &m, s);
+        store(m.chosen + s, all(-1.0f)); /* none */
+        store(d.theta_r + s, theta_r);
+        store(d.r + s, wrap(phi_r, -hairlut_pi));
+        store(d.theta_i + s, theta_i);
+        store(d.i + s, wrap(phi_i, -hairlut_pi));
+    }
+    sum_up(model, n, &m);
+    add_densities(model, &d, &m, n, NULL, NULL, sum);
+    for (size_t s = 0; s < n; s += LANES)
+        store(out + s, load(sum + s));
+}
+
+/* order[s] is the place of the sample that comes s-th where samples are sorted by the lobes that they draw. */
+static inline void sort_by_lobe(int lobe_count, size_t n, const float *chosen, ranges *own, int *order)
+{
+    size_t next[HAIRLUT_MAX_LOBES];
+    for (int k = 0; k <= lobe_count; ++k)
+        own->first[k] = 0;
+    for (size_t s = 0; s < n; ++s)
+        ++own->first[(int)chosen[s] + 1];
+    for (int k = 0; k < lobe_count; ++k)
+        next[k] = own->first[k + 1] += own->first[k];
+    for (int k = 0; k < lobe_count; ++k)
+        next[k] = own->first[k];
+    for (size_t s = 0; s < n; ++s)
+        order[next[(int)chosen[s]]++] = (int)s;
+}
+
+/* to[s] = from[order[s]]; a vector beyond the end is 0. */
+static inline void reorder(float *to, const float *from, const int *order, size_t n)
+{
+    HAIRLUT_UNROLLED
+    for (size_t s = 0; s < n; ++s)
+        to[s] = from[order[s]];
+    store(to + n, all(0.0f));
+}
+
+static inline void reorder_in_place(float *values, const int *order, size_t n)
+{
+    float kept[BLOCK];
+    for (size_t s = 0; s < n; s += LANES)
+        store(kept + s, load(values + s));
+    reorder(values, kept, order, n);
+}
+
+static inline void restore_order(float *to, const float *from, const int *order, size_t n)
+{
+    HAIRLUT_UNROLLED
+    for (size_t s = 0; s < n; ++s)
+        to[order[s]] = from[s];
+}
+
+/* What samples draw from. */
+typedef struct numbers_drawn {
+    float theta[ROOM], phi[ROOM];
+} numbers_drawn;
+
+/* The mixtures of a block, and its inputs, in the order of the lobes drawn. */
+static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, mixes *m, directions *d, numbers_drawn *u,
+                           ranges *own, int *order)
+{
+    float r[BLOCK];
+    for (size_t s = 0; s < n; s += LANES) {
+        const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), u_lobe = load(in->u_lobe + s);
+        const real offset = in->offset ? load(in->offset + s) : all(0.0f);
+        const mask wanted = both(known(theta_r, phi_r, load(in->u_theta + s), load(in->u_phi + s)), numbers(offset, u_lobe));
+        mix_at(model, in->given, theta_r, offset, wanted, u_lobe, m, s);
+        store(r + s, wrap(phi_r, -hairlut_pi));
+    }
+    sum_up(model, n, m);
+    sort_by_lobe(model->lobe_count, n, m->chosen, own, order);
+    reorder(d->theta_r, in->theta_r, order, n);
+    reorder(d->r, r, order, n);
+    reorder(u->theta, in->u_theta, order, n);
+    reorder(u->phi, in->u_phi, order, n);
+    for (int k = 0; k < model->lobe_count; ++k) {
+        reorder_in_place(m->weight[k], order, n);
+        if (model->mixture.turned)
+            reorder_in_place(m->turn[k], order, n);
+    }
+    reorder_in_place(m->side, order, n);
+    reorder_in_place(m->chosen, order, n);
+}
+
+/* hairlut_turned_incident, of samples s .. s+LANES-1 */
+static inline real turned_incident(const hairlut_model *model, int k, const mixes *m, real r, real x, size_t s)
+{
+    const hairlut_mixture *mixture = &model->mixture;
+    const real turn = mixture->turned ? load(m->turn[k] + s) : all(0.0f);
+    const real relative = mul(load(m->side + s), add(x, turn));
+    return wrap(incident(model->lobes[k].azimuth, r, relative), -hairlut_pi);
+}
+
+/* What lobe k draws for its range of the sorted samples. Beyond its end, up to a whole vector, the next lobe writes again. */
+static inline void draw_range(const hairlut_model *model, int k, const mixes *m, const numbers_drawn *u, size_t from, size_t to,
+                              directions *d, float *drawn, float *cosines)
+{
+    const hairlut_lobe *lobe = &model->lobes[k];
+    float theta_i[BLOCK], azimuth[BLOCK];
+    const size_t padded = whole_vectors(to - from);
+    draw_lobe(lobe, padded, d->theta_r + from, u->theta + from, u->phi + from, theta_i, azimuth, drawn + from);
+    for (size_t s = 0; s < padded; s += LANES) {
+        const real theta = clamp(load(theta_i + s), all(lobe->theta.low), all(lobe->theta.high)), x = load(azimuth + s);
+        store(d->theta_i + from + s, theta);
+        store(cosines + from + s, cosine(theta));
+        store(d->i + from + s, lobe->uniform ? x : turned_incident(model, k, m, load(d->r + from + s), x, from + s));
+    }
+}
+
+/* hairlut_sample_hair */
+static inline void sample_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, hairlut_samples out)
+{
+    directions d;
+    numbers_drawn u;
+    mixes m;
+    ranges own;
+    int order[BLOCK];
+    float drawn[ROOM], cosines[ROOM], pdf[BLOCK], solid[BLOCK];
+    prepare(model, n, in, &m, &d, &u, &own, order);
+    for (int k = 0; k < model->lobe_count; ++k)
+        if (own.first[k] < own.first[k + 1])
+            draw_range(model, k, &m, &u, own.first[k], own.first[k + 1], &d, drawn, cosines);
+    end_directions(&d, &m, n);
+    add_densities(model, &d, &m, n, &own, drawn, pdf);
+    for (size_t s = 0; s < n; s += LANES)
+        store(solid + s, over(load(pdf + s), load(cosines + s)));
+    restore_order(out.theta_i, d.theta_i, order, n);
+    restore_order(out.phi_i, d.i, order, n);
+    if (out.pdf_angle)
+        restore_order(out.pdf_angle, pdf, order, n);
+    if (out.pdf_solid_angle)
+        restore_order(out.pdf_solid_angle, solid, order, n);
+}
+
+#endif

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A lobe for a block: lobe.h, operation by operation. n is a multiple of LANES, at most BLOCK. */
+#ifndef HAIRLUT_BATCH_LOBE_H
+#define HAIRLUT_BATCH_LOBE_H
+
+#include "batch_angle.h"
+#include "batch_axis.h"
+#include "lobe.h"
+
+/* hairlut_lobe_draw */
+static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *u_theta, const float *u_phi,
+                             float *theta_i, float *azimuth, float *pdf)
+{
+    draws theta, phi;
+    place(&lobe->theta, n, theta_r, u_theta, &theta);
+    if (!lobe->uniform)
+        place(&lobe->phi, n, theta_r, u_phi, &phi);
+    fetch_draws(&lobe->theta, n, &theta);
+    if (!lobe->uniform)
+        fetch_draws(&lobe->phi, n, &phi);
+    for (size_t s = 0; s < n; s += LANES) {
+        real theta_slope, phi_slope;
+        store(theta_i + s, draw(&theta, s, &theta_slope));
+        if (lobe->uniform) {
+            const real x = sub(mul(all(hairlut_two_pi), clamp(load(u_phi + s), all(0.0f), all(1.0f))), all(hairlut_pi));
+            store(azimuth + s, choose(greater(all(hairlut_pi), x), x, all(-hairlut_pi)));
+            store(pdf + s, over(all(hairlut_inverse_two_pi), theta_slope));
+        } else {
+            store(azimuth + s, draw(&phi, s, &phi_slope));
+            store(pdf + s, over(all(1.0f), mul(theta_slope, phi_slope)));
+        }
+    }
+}
+
+/* hairlut_lobe_begin_search and hairlut_lobe_end_search. azimuth: relative; not read where it is uniform. */
+static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *theta_i, const float *azimuth,
+                                float *pdf)
+{
+    searches theta, phi;
+    float contains[BLOCK]; /* 1, or 0 where the lobe's domain does not contain the direction */
+    for (size_t s = 0; s < n; s += LANES) {
+        const real r = load(theta_r + s);
+        mask inside = begin_search(&lobe->theta, r, load(theta_i + s), &theta, s);
+        if (!lobe->uniform)
+            inside = both(inside, begin_search(&lobe->phi, r, load(azimuth + s), &phi, s));
+        store(contains + s, choose(inside, all(1.0f), all(0.0f)));
+    }
+    end_search(&lobe->theta, n, &theta);
+    if (!lobe->uniform)
+        end_search(&lobe->phi, n, &phi);
+    for (size_t s = 0; s < n; s += LANES) {
+        real theta_root, phi_root;
+        const real theta_bend = inverse(&theta, s, &theta_root), known = load(contains + s);
+        if (lobe->uniform) {
+            store(pdf + s, over(mul(mul(known, all(hairlut_inverse_two_pi)), theta_bend), theta_root));
+        } else {
+            const real phi_bend = inverse(&phi, s, &phi_root);
+            store(pdf + s, over(mul(known, mul(theta_bend, phi_bend)), mul(theta_root, phi_root)));
+        }
+    }
+}
+
+/* hairlut_known, of what a sample or a density is asked for */
+static inline mask known(real theta_r, real phi_r, real a, real b)
+{
+    return both(numbers(theta_r, a), numbers(b, sub(phi_r, phi_r)));
+}
+
+/* phi_i of a lobe's own azimuth x; r is phi_r in [-pi, pi) */
+static inline real incident(int azimuth, real r, real x)
+{
+    return azimuth == HAIRLUT_AZIMUTH_SUM ? sub(x, r) : add(x, r);
+}
+
+/* hairlut_relative_azimuth, of azimuths in [-pi, pi) */
+static inline real relative_azimuth(int azimuth, real r, real i)
+{
+    return wrap_up(azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
+}
+
+/* Finite, where an azimuth is asked for. */
+static inline mask finite(real x)
+{
+    return at_least(all(FLT_MAX), magnitude(x));
+}
+
+/* hairlut_sample_lobe. The last pass reads the inputs of no vector but its own, before it writes there: outputs may be in place. */
+static inline void sample_lobe_block(const hairlut_model *model, int lobe, size_t n, const float *const in[4], hairlut_samples out)
+{
+    const hairlut_lobe *l = &model->lobes[lobe];
+    float theta_i[BLOCK], azimuth[BLOCK], pdf[BLOCK], valid[BLOCK];
+    draw_lobe(l, n, in[0], in[2], in[3], theta_i, azimuth, pdf);
+    for (size_t s = 0; s < n; s += LANES) {
+        const real phi_r = load(in[1] + s), x = load(azimuth + s);
+        const mask is_known = known(load(in[0] + s), phi_r, load(in[2] + s), load(in[3] + s));
+        const real turned = wrap_down(incident(l->azimuth, wrap(phi_r, -hairlut_pi), x), -hairlut_pi);
+        store(valid + s, choose(is_known, load(pdf + s), all(0.0f)));
+        store(azimuth + s, l->uniform ? x : turned);
+    }
+    for (size_t s = 0; s < n; s += LANES) {
+        const real theta = load(theta_i + s), density = load(valid + s);
+        store(out.theta_i + s, clamp(theta, all(l->theta.low), all(l->theta.high)));
+        store(out.phi_i + s, load(azimuth + s));
+        if (out.pdf_angle)
+            store(out.pdf_angle + s, density);
+        if (out.pdf_solid_angle)
+            store(out.pdf_solid_angle + s, over(density, cosine(theta)));
+    }
+}
+
+/* hairlut_pdf_lobe */
+static inline void pdf_lobe_block(const hairlut_model *model, int lobe, size_t n, const float *const in[4], float *out)
+{
+    const hairlut_lobe *l = &model->lobes[lobe];
+    float azimuth[BLOCK], valid[BLOCK], pdf[BLOCK];
+    if (n == 0)
+        return;
+    for (size_t s = 0; s < n; s += LANES) {
+        const real phi_r = load(in[1] + s), phi_i = load(in[3] + s);
+        const mask is_known = both(known(load(in[0] + s), phi_r, load(in[2] + s), phi_i), finite(phi_i));
+        store(valid + s, choose(is_known, all(1.0f), all(0.0f)));
+        store(azimuth + s, relative_azimuth(l->azimuth, wrap(phi_r, -hairlut_pi), wrap(phi_i, -hairlut_pi)));
+    }
+    lobe_density(l, n, in[0], in[2], azimuth, pdf);
+    for (size_t s = 0; s < n; s += LANES)
+        store(out + s, choose(greater(load(valid + s), all(0.0f)), load(pdf + s), all(0.0f)));
+}
+
+#endif

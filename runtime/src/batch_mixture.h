@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The mixture for a block: mixture.h, operation by operation. */
+#ifndef HAIRLUT_BATCH_MIXTURE_H
+#define HAIRLUT_BATCH_MIXTURE_H
+
+#include "batch_angle.h"
+#include "batch_axis.h"
+#include "mixture.h"
+
+/* The caller's shares of a block: lobe k's from shares + k * stride on. NULL: the model's own. */
+typedef struct given_shares {
+    const float *shares;
+    size_t stride;
+} given_shares;
+
+/* The mixtures of a block. Of arrays of lobes, as many are set as the model has. */
+typedef struct mixes {
+    float weight[HAIRLUT_MAX_LOBES][ROOM]; /* share / sum */
+    float turn[HAIRLUT_MAX_LOBES][ROOM];   /* not set where no lobe of the model is turned */
+    float side[ROOM];
+    float chosen[ROOM];                    /* the lobe that is drawn, a whole number */
+    int some[HAIRLUT_MAX_LOBES];           /* whether any of the block has a share of the lobe */
+    int every[HAIRLUT_MAX_LOBES];          /* whether all have */
+} mixes;
+
+enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, more are halved for single samples */
+
+/* hairlut_mixture_row */
+static inline real find_node(const float *nodes, int count, real x, real *t)
+{
+    float at[LANES], place[LANES];
+    real j = all(0.0f);
+    *t = all(0.0f);
+    if (count == 1)
+        return j;
+    if (count <= COUNTED_NODES) {
+        for (int k = 1; k < count - 1; ++k)
+            j = add(j, choose(at_least(x, all(nodes[2 * k])), all(1.0f), all(0.0f)));
+    } else {
+        store(at, x);
+        for (int l = 0; l < LANES; ++l)
+            place[l] = (float)hairlut_mixture_row(nodes, count, at[l]).j;
+        j = load(place);
+    }
+    int offset[LANES];
+    real node[4];
+    istore(offset, truncated(add(j, j)));
+    gather4(nodes, offset, node);
+    *t = clamp(mul(sub(x, node[0]), node[1]), all(0.0f), all(1.0f));
+    return j;
+}
+
+/* The four corners around: offsets of the first lobe's floats at each, and the weights between. */
+typedef struct corners {
+    int low[LANES], low_above[LANES], high[LANES], high_above[LANES];
+    real t, s;
+} corners;
+
+/* Offsets stay below 2^24 (hairlut_validate_mixture), where floats count exactly. */
+static inline void find_corners(const hairlut_model *model, real theta_r, real arc, corners *c)
+{
+    const hairlut_mixture *m = &model->mixture;
+    const int node = HAIRLUT_CORNER * model->lobe_count, above = m->rows > 1 ? node * m->columns : 0;
+    const int beside = m->columns > 1 ? node : 0;
+    const real j = find_node(m->theta_r, m->rows, theta_r, &c->t), o = find_node(m->arc, m->columns, arc, &c->s);
+    const whole low = truncated(add(mul(j, all((float)above)), mul(o, all((float)beside))));
+    istore(c->low, low);
+    istore(c->low_above, iadd(low, iall(above)));
+    istore(c->high, iadd(low, iall(beside)));
+    istore(c->high_above, iadd(low, iall(above + beside)));
+}
+
+/* hairlut_blend_shares, and hairlut_blend_turns where lobes are turned */
+static inline real blend_corners(const hairlut_mixture *m, const corners *c, int lobe, real *turn)
+{
+    const float *at = m->corners + HAIRLUT_CORNER * lobe;
+    real low[4], low_above[4], high[4], high_above[4];
+    const real t = c->t, s = c->s, t0 = sub(all(1.0f), t), s0 = sub(all(1.0f), s);
+    gather4(at, c->low, low);
+    gather4(at, c->low_above, low_above);
+    gather4(at, c->high, high);
+    gather4(at, c->high_above, high_above);
+    if (m->turned) {
+        const real from = add(low[1], mul(t, low[2])), to = add(high[1], mul(t, high[2]));
+        *turn = wrap(add(from, mul(s, wrap(sub(to, from), -hairlut_pi))), -hairlut_pi);
+    }
+    const real from = add(mul(t0, low[0]), mul(t, low_above[0])), to = add(mul(t0, high[0]), mul(t, high_above[0]));
+    return add(mul(s0, from), mul(s, to));
+}
+
+/* hairlut_mixture_given: the shares; returns their sum */
+static inline real take_shares(int count, given_shares given, size_t s, real share[HAIRLUT_MAX_LOBES])
+{
+    real sum = all(0.0f), finite = all(0.0f);
+    for (int k = 0; k < count; ++k) {
+        const real x = load(given.shares + (size_t)k * given.stride + s);
+        finite = add(finite, sub(x, x));
+        share[k] = larger(x, all(0.0f));
+        sum = add(sum, share[k]);
+    }
+    const real grown = choose(greater(all(hairlut_small_share), sum), all(hairlut_grow), all(1.0f));
+    const real unit = choose(greater(sum, all(hairlut_large_share)), all(hairlut_shrink), grown);
+    sum = all(0.0f);
+    for (int k = 0; k < count; ++k)
+        sum = add(sum, share[k] = mul(share[k], unit));
+    return choose(at_least(finite, all(0.0f)), sum, all(0.0f));
+}
+
+/* hairlut_mixture_at of samples s .. s+LANES-1, weights in place of shares, and hairlut_mixture_choose. Where `wanted` is not
+ * true, or no density can be given, all weights are 0. */
+static inline void mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mask wanted, real u_lobe, mixes *m,
+                          size_t s)
+{
+    const hairlut_mixture *mixture = &model->mixture;
+    const int count = model->lobe_count, constant = mixture->rows == 1 && mixture->columns == 1;
+    const real h = clamp(offset, all(-1.0f), all(1.0f));
+    real share[HAIRLUT_MAX_LOBES], turn[HAIRLUT_MAX_LOBES], sum = all(0.0f);
+    corners c;
+    if (!constant)
+        find_corners(model, theta_r, arcsine(mixture->mirrored ? magnitude(h) : h), &c);
+    for (int k = 0; k < count; ++k) {
+        const float *corner = mixture->corners + HAIRLUT_CORNER * k;
+        turn[k] = all(corner[1]);
+        share[k] = constant ? all(corner[0]) : blend_corners(mixture, &c, k, &turn[k]);
+        sum = add(sum, share[k]);
+        if (mixture->turned)
+            store(m->turn[k] + s, turn[k]);
+    }
+    if (given.shares)
+        sum = take_shares(count, given, s, share);
+    store(m->side + s, mixture->mirrored ? choose(greater(all(0.0f), h), all(-1.0f), all(1.0f)) : all(1.0f));
+    const mask valid = both(wanted, greater(sum, all(0.0f)));
+    const real unit = over(all(1.0f), sum), target = mul(clamp(u_lobe, all(0.0f), all(1.0f)), sum);
+    real below = all(0.0f), chosen = all(0.0f);
+    for (int k = 0; k < count; ++k) {
+        const mask is_positive = greater(share[k], all(0.0f));
+        chosen = choose(both(at_least(target, below), is_positive), all((float)k), chosen);
+        below = add(below, share[k]);
+        store(m->weight[k] + s, choose(valid, mul(share[k], unit), all(0.0f)));
+    }
+    store(m->chosen + s, chosen);
+}
+
+/* Fills `some` and `every` once the weights of n samples are set. */
+static inline void sum_up(const hairlut_model *model, size_t n, mixes *m)
+{
+    for (int k = 0; k < model->lobe_count; ++k) {
+        real least = all(1.0f), most = all(0.0f);
+        for (size_t s = 0; s < n; s += LANES) {
+            least = smaller(load(m->weight[k] + s), least);
+            most = larger(load(m->weight[k] + s), most);
+        }
+        m->some[k] = !every(at_least(all(0.0f), most));
+        m->every[k] = every(greater(least, all(0.0f)));
+    }
+}
+
+#endif

@@ -1,0 +1,95 @@
+/* Eight lanes of AVX2 for batch_kernel.h, which says what each operation must do. */
+#ifndef HAIRLUT_SIMD_AVX2_H
+#define HAIRLUT_SIMD_AVX2_H
+
+#include <immintrin.h>
+
+#include "internal.h"
+
+typedef __m256 real;
+typedef __m256i whole;
+typedef __m256 mask;
+enum { LANES = 8 };
+
+static inline real load(const float *p) { return _mm256_loadu_ps(p); }
+static inline void store(float *p, real a) { _mm256_storeu_ps(p, a); }
+static inline real all(float a) { return _mm256_set1_ps(a); }
+static inline real add(real a, real b) { return _mm256_add_ps(a, b); }
+static inline real sub(real a, real b) { return _mm256_sub_ps(a, b); }
+static inline real mul(real a, real b) { return _mm256_mul_ps(a, b); }
+static inline real over(real a, real b) { return _mm256_div_ps(a, b); }
+static inline real root(real a) { return _mm256_sqrt_ps(a); }
+static inline real smaller(real a, real b) { return _mm256_min_ps(a, b); }
+static inline real larger(real a, real b) { return _mm256_max_ps(a, b); }
+static inline real magnitude(real a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
+static inline mask greater(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GT_OQ); }
+static inline mask at_least(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
+static inline mask numbers(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_ORD_Q); }
+static inline mask both(mask a, mask b) { return _mm256_and_ps(a, b); }
+static inline int every(mask m) { return _mm256_movemask_ps(m) == 0xff; }
+static inline real choose(mask m, real a, real b) { return _mm256_blendv_ps(b, a, m); }
+
+static inline whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
+static inline void istore(int *p, whole a) { _mm256_storeu_si256((__m256i *)p, a); }
+static inline whole iall(int a) { return _mm256_set1_epi32(a); }
+static inline whole iadd(whole a, whole b) { return _mm256_add_epi32(a, b); }
+static inline whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
+static inline whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
+static inline whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
+static inline mask igreater(whole a, whole b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b)); }
+static inline whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
+static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
+static inline real shifted(real a) { return _mm256_castsi256_ps(_mm256_srli_epi32(_mm256_castps_si256(a), 2)); }
+static inline real converted(whole a) { return _mm256_cvtepi32_ps(a); }
+
+static inline real quads(const float *p, const int *at)
+{
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + at[0])), _mm_loadu_ps(p + at[4]), 1);
+}
+
+static inline void gather4(const float *p, const int *at, real x[4])
+{
+    const real r0 = quads(p, at), r1 = quads(p, at + 1), r2 = quads(p, at + 2), r3 = quads(p, at + 3);
+    const __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(r0, r1)), b = _mm256_castps_pd(_mm256_unpackhi_ps(r0, r1));
+    const __m256d c = _mm256_castps_pd(_mm256_unpacklo_ps(r2, r3)), d = _mm256_castps_pd(_mm256_unpackhi_ps(r2, r3));
+    x[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(a, c));
+    x[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(a, c));
+    x[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(b, d));
+    x[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(b, d));
+}
+
+/* -1 in the lanes of the eight blended texels that are at most x */
+static inline whole at_most(real from, real change, real t, real x)
+{
+    return _mm256_castps_si256(_mm256_cmp_ps(add(from, mul(t, change)), x, _CMP_LE_OQ));
+}
+
+HAIRLUT_INLINE whole tally(const float *group, const float *above, float t, float x, int n)
+{
+    const real from = load(group), to = load(above);
+    if (n == HAIRLUT_SMALL_GROUP)
+        return at_most(from, to, all(t), all(x));
+    const real from8 = load(group + 8), to8 = load(above + 8);
+    return iadd(at_most(from, sub(to, from), all(t), all(x)), at_most(from8, sub(to8, from8), all(t), all(x)));
+}
+
+/* The tallies of samples 0 and 1, as 16-bit integers: those of sample 0 are in the first half of both halves of a vector. */
+HAIRLUT_INLINE whole pair(const float *groups, const float *above, const int *at, const float *t, const float *x, int n)
+{
+    return _mm256_packs_epi32(tally(groups + at[0], above + at[0], t[0], x[0], n),
+                              tally(groups + at[1], above + at[1], t[1], x[1], n));
+}
+
+/* Eight tallies become bytes, four for each sample in both halves of a vector, whose sum is turned positive. */
+#define HAIRLUT_COUNTS counts_at_most
+HAIRLUT_INLINE whole counts_at_most(const float *groups, const float *above, const int *at, const float *t, const float *x,
+                                    int n)
+{
+    const whole p0 = pair(groups, above, at, t, x, n), p2 = pair(groups, above, at + 2, t + 2, x + 2, n);
+    const whole p4 = pair(groups, above, at + 4, t + 4, x + 4, n), p6 = pair(groups, above, at + 6, t + 6, x + 6, n);
+    const whole a = _mm256_packs_epi16(p0, p2), b = _mm256_packs_epi16(p4, p6);
+    const whole bytes = _mm256_add_epi8(_mm256_permute2x128_si256(a, b, 0x20), _mm256_permute2x128_si256(a, b, 0x31));
+    return _mm256_madd_epi16(_mm256_maddubs_epi16(_mm256_set1_epi8(1), bytes), _mm256_set1_epi16(-1));
+}
+
+#endif

@@ -1,0 +1,53 @@
+/* Four lanes of AArch64 Advanced SIMD for batch_kernel.h, which says what each operation must do. */
+#ifndef HAIRLUT_SIMD_NEON_H
+#define HAIRLUT_SIMD_NEON_H
+
+#include <arm_neon.h>
+
+typedef float32x4_t real;
+typedef int32x4_t whole;
+typedef uint32x4_t mask;
+enum { LANES = 4 };
+
+static inline real load(const float *p) { return vld1q_f32(p); }
+static inline void store(float *p, real a) { vst1q_f32(p, a); }
+static inline real all(float a) { return vdupq_n_f32(a); }
+static inline real add(real a, real b) { return vaddq_f32(a, b); }
+static inline real sub(real a, real b) { return vsubq_f32(a, b); }
+static inline real mul(real a, real b) { return vmulq_f32(a, b); }
+static inline real over(real a, real b) { return vdivq_f32(a, b); }
+static inline real root(real a) { return vsqrtq_f32(a); }
+static inline real magnitude(real a) { return vabsq_f32(a); }
+static inline mask greater(real a, real b) { return vcgtq_f32(a, b); }
+static inline mask at_least(real a, real b) { return vcgeq_f32(a, b); }
+static inline mask both(mask a, mask b) { return vandq_u32(a, b); }
+static inline int every(mask m) { return vminvq_u32(m) != 0; }
+static inline mask numbers(real a, real b) { return both(vceqq_f32(a, a), vceqq_f32(b, b)); }
+static inline real choose(mask m, real a, real b) { return vbslq_f32(m, a, b); }
+static inline real smaller(real a, real b) { return choose(greater(b, a), a, b); }
+static inline real larger(real a, real b) { return choose(greater(a, b), a, b); }
+
+static inline whole iload(const int *p) { return vld1q_s32(p); }
+static inline void istore(int *p, whole a) { vst1q_s32(p, a); }
+static inline whole iall(int a) { return vdupq_n_s32(a); }
+static inline whole iadd(whole a, whole b) { return vaddq_s32(a, b); }
+static inline whole isub(whole a, whole b) { return vsubq_s32(a, b); }
+static inline whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
+static inline whole imul(whole a, whole b) { return vmulq_s32(a, b); }
+static inline mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
+static inline whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }
+static inline whole truncated(real a) { return vcvtq_s32_f32(a); }
+static inline real shifted(real a) { return vreinterpretq_f32_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 2)); }
+static inline real converted(whole a) { return vcvtq_f32_s32(a); }
+
+static inline void gather4(const float *p, const int *at, real x[4])
+{
+    const float32x4x2_t a = vtrnq_f32(load(p + at[0]), load(p + at[1]));
+    const float32x4x2_t b = vtrnq_f32(load(p + at[2]), load(p + at[3]));
+    x[0] = vcombine_f32(vget_low_f32(a.val[0]), vget_low_f32(b.val[0]));
+    x[1] = vcombine_f32(vget_low_f32(a.val[1]), vget_low_f32(b.val[1]));
+    x[2] = vcombine_f32(vget_high_f32(a.val[0]), vget_high_f32(b.val[0]));
+    x[3] = vcombine_f32(vget_high_f32(a.val[1]), vget_high_f32(b.val[1]));
+}
+
+#endif

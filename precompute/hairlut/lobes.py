@@ -26,6 +26,8 @@ TABLES = DIRECT_THETA, DIRECT_PHI, MULTIPLE_THETA = "direct_theta", "direct_phi"
 LOBES = DIRECT, MULTIPLE = "direct", "multiple"
 AZIMUTHS = DIFFERENCE, SUM = "difference", "sum"  # what phi is: phi_i - phi_r, phi_i + phi_r
 NO_AZIMUTH = "none"
+NO_FORMULA = "fitted to a hair's BSDF by hairlut fit"
+"""The formula of a density that has none: masses of cells, which verify.py cannot compute again."""
 
 MAX_LOBES = 16
 LOBE_NAME = r"[a-z][a-z0-9_]{0,30}"

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from . import exr, manifest
+from . import exr, manifest, mixturefile
 from .errors import HairlutError
 from .exact import exact_at
-from .lobes import MODELS, TABLES, Array, Lobe, Model
+from .lobes import MODELS, NO_FORMULA, TABLES, Array, Lobe, Model
 from .measure import ON_ROWS, Errors, inclinations, measure
 from .modelfile import load
 from .table import Table
@@ -26,11 +26,13 @@ CLAIM_NOISE = 1e-9
 
 @dataclass
 class Report:
-    """What was found out about one file. problems: what is wrong, and where; empty if the file is good."""
+    """What is known about one file. problems: what is wrong, and where; empty if the file is good. note: what
+    could not be checked."""
 
     path: Path
     problems: list[str] = field(default_factory=list)
     size: str = ""
+    note: str = ""
     measured: dict[str, float] = field(default_factory=dict)
     claimed: dict[str, float] = field(default_factory=dict)
 
@@ -46,8 +48,8 @@ def verify(path: Path, model: Model | None = None) -> list[Report]:
     and that is TOML or npz.
     """
     path = Path(path)
-    if not path.exists():
-        raise HairlutError(f"{path}: no such file or directory")
+    if not path.exists() and path.suffix != ".exr":  # a table that is missing is a report of its own
+        raise HairlutError(f"{path}: no such directory")
     files = sorted(path.rglob("*.exr")) if path.is_dir() else [path]
     if not files:
         raise HairlutError(f"{path}: no .exr file in this directory: expected <model>/<table>.exr")
@@ -55,9 +57,11 @@ def verify(path: Path, model: Model | None = None) -> list[Report]:
     models = (
         MODELS | {found.name: found for found in map(load, beside)} | ({model.name: model} if model else {})
     )
-    reports = [verify_file(file, models) for file in files]
+    reports = [verify_file(file, models) for file in files if file.name != mixturefile.FILE]
+    mixtures = [file for file in files if file.name == mixturefile.FILE]
+    reports += [_mixture(file) for file in mixtures]
     if path.is_dir():
-        for directory in sorted({file.parent for file in files}):
+        for directory in sorted({file.parent for file in files} - {file.parent for file in mixtures}):
             reports += _incomplete(directory)
     return reports
 
@@ -68,7 +72,20 @@ def lobe_of(path: Path, model: Model | None = None) -> Lobe:
     return _lobe(path, exr.read(path)[0], MODELS | ({model.name: model} if model else {}))
 
 
+def _mixture(path: Path) -> Report:
+    """The report on a mixture, with the tables that it names, each of which must be of the same bake."""
+    report = Report(path)
+    try:
+        model = exr.read_model(path.parent)
+    except HairlutError as error:
+        report.problems.append(str(error).removeprefix(f"{path}: "))
+        return report
+    report.size = f"{len(model.lobes)} lobes, {len(model.tables)} tables"
+    return report
+
+
 def _incomplete(directory: Path) -> list[Report]:
+    """A report on each table that a model of format 1 lacks."""
     missing = [name for name in TABLES if not (directory / f"{name}.exr").is_file()]
     return [
         Report(directory / f"{name}.exr", ["the file is missing: bake the model again"]) for name in missing
@@ -80,11 +97,14 @@ def verify_file(path: Path, models: dict[str, Model]) -> Report:
     report = Report(path)
     try:
         table, report.claimed = exr.read(path)
+        report.size = f"{table.width}x{table.height}"
+        if table.parameters == NO_FORMULA and table.model not in models:
+            report.note = "fitted to a BSDF: checked for form and digest, but not against the BSDF"
+            return report
         lobe = _lobe(path, table, models)
     except HairlutError as error:
         report.problems.append(str(error).removeprefix(f"{path}: "))
         return report
-    report.size = f"{table.width}x{table.height}"
     exact = exact_at(lobe, inclinations(table.theta_r_range, table.height))
     report.problems += _texels(table, exact.quantiles(*table.warp.knots(table.width), ON_ROWS))
     errors = measure(table, lobe, exact=exact)

@@ -46,11 +46,13 @@ def _plain(report: Report) -> dict:
 
 def _text(report: Report) -> str:
     errors = report.measured
-    numbers = (
-        f"  {report.size}, V {errors['relative_variance']:.2e}, weight {errors['largest_weight']:.2f}, "
+    numbers = f"  {report.size}" * bool(report.size)
+    numbers += (
+        f", V {errors['relative_variance']:.2e}, weight {errors['largest_weight']:.2f}, "
         f"quantile error {errors['quantile_inner']:.1e} rad"
         if errors
         else ""
     )
+    numbers += f" ({report.note})" * bool(report.note)
     head = f"{'ok    ' if report.ok else 'FAILED'} {report.path}{numbers}"
     return "\n".join([head, *(f"       {problem}" for problem in report.problems)])

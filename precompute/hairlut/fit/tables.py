@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import interpolant
 from ..errors import HairlutError
-from ..lobes import HALF_PI, Array, Lobe
+from ..lobes import HALF_PI, NO_FORMULA, Array, Lobe
 from ..table import Table, tabulate
 from ..warp import Warp
 from .smooth import SmoothRows
@@ -80,7 +80,7 @@ def _lobe(name: str, model: str, exact: SmoothRows) -> Lobe:
         azimuth="difference" if of_phi else "none",
         domain=(0.0, TWO_PI) if of_phi else (-HALF_PI, HALF_PI),
         log_density=_unused,
-        formula="fitted to a hair's BSDF by hairlut fit",
+        formula=NO_FORMULA,
         theta_r_range=(float(exact.theta_r[0]), float(exact.theta_r[-1])),
     )
 

@@ -8,6 +8,7 @@ checked: one part of scanlines, a harmless size and compression, and exactly the
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +19,14 @@ from .digest import digest
 from .errors import HairlutError
 from .files import replace_whole
 from .lobes import Array
+from .nulldevice import null_device
 
 FORMAT = 2
 UNIT = "rad"
 PREFIX = "hairlut."
 ERROR_PREFIX = "hairlut.error."
 REBAKE = "bake it again with 'hairlut bake'"
+MAGIC = b"\x76\x2f\x31\x01"
 MAX_SIDE = 4096
 COMPRESSIONS = ("NO_COMPRESSION", "RLE_COMPRESSION", "ZIPS_COMPRESSION", "ZIP_COMPRESSION")
 
@@ -94,11 +97,17 @@ def _open(path: Path, header_only: bool) -> OpenEXR.File:
         raise HairlutError(f"{path}: is a directory: name a file in it")
     if not path.is_file():
         raise HairlutError(f"{path}: no such file: {REBAKE}")
+    with path.open("rb") as start:
+        if start.read(len(MAGIC)) != MAGIC:
+            raise HairlutError(f"{path}: is no OpenEXR image: {REBAKE}")
     try:
-        file = OpenEXR.File(str(path), separate_channels=True, header_only=header_only)
+        with null_device(2), redirect_stdout(None):  # the library prints what the error says
+            file = OpenEXR.File(str(path), separate_channels=True, header_only=header_only)
     except Exception as error:  # the binding raises several unrelated types
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise HairlutError(f"{path}: not a complete OpenEXR image ({reason}): {REBAKE}") from error
+    if not file.parts:
+        raise HairlutError(f"{path}: not a complete OpenEXR image, its pixels are cut: {REBAKE}")
     if len(file.parts) != 1:
         raise HairlutError(f"{path}: has {len(file.parts)} parts, expected one: {REBAKE}")
     return file

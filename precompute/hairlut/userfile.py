@@ -9,7 +9,6 @@ either: sys.exit() is an error like any other.
 from __future__ import annotations
 
 import io
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
@@ -20,6 +19,7 @@ from traceback import extract_tb
 from types import ModuleType
 
 from .errors import HairlutError
+from .nulldevice import null_device
 from .text import decode, read_bytes
 
 EXPECTED = "a Python file"
@@ -68,7 +68,7 @@ def user_code(path: Path) -> Iterator[None]:
     sys.path.insert(0, folder)
     sys.stdin, sys.dont_write_bytecode = _NoInput(), True
     try:
-        with _named(path), _null_descriptor(), redirect_stdout(sys.stderr):
+        with _named(path), null_device(0), redirect_stdout(sys.stderr):
             yield
     finally:
         sys.stdin, sys.dont_write_bytecode = kept
@@ -119,24 +119,6 @@ class _NoInput(io.TextIOBase):
 
     def read(self, size: int = -1) -> str:
         return self.readline()
-
-
-@contextmanager
-def _null_descriptor() -> Iterator[None]:
-    """An empty file in place of the process's standard input, for code that reads below Python's streams."""
-    try:
-        kept = os.dup(0)
-    except OSError:  # there is none
-        yield
-        return
-    null = os.open(os.devnull, os.O_RDONLY)
-    try:
-        os.dup2(null, 0)
-        yield
-    finally:
-        os.dup2(kept, 0)
-        os.close(null)
-        os.close(kept)
 
 
 def _forget_neighbours(folder: Path, before: set[str]) -> tuple[Path, ...]:

@@ -225,7 +225,7 @@ def test_truncated_file_at_every_length(path):
 
 def test_other_files_and_no_file(path, tmp_path):
     path.write_text("theta_r_deg,mu_deg\n")
-    assert "not a complete OpenEXR image" in refusal(path)
+    assert "is no OpenEXR image" in refusal(path)
     assert "no such file" in refusal(tmp_path / "direct_theta.exr")
     assert "is a directory: name a file in it" in refusal(tmp_path)
 

@@ -26,8 +26,11 @@ def test_bake_writes_both_models_and_names_the_files(baked):
     done, out = baked
     assert (done.returncode, done.stderr) == (0, "")  # no progress bar where there is no terminal
     lines = done.stdout.splitlines()
-    assert len(lines) == 6
-    for line in lines:
+    mixtures = [f"{out}/{model}/mixture.exr  direct, multiple" for model in ("printed", "fitted")]
+    assert [line for line in lines if "mixture.exr" in line] == mixtures
+    tables = [line for line in lines if "mixture.exr" not in line]
+    assert len(tables) == 6
+    for line in tables:
         path = out / line.split("  ")[0]
         table, errors = exr.read(path)
         assert (table.width, table.height) == (16, 8)

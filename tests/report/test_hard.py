@@ -95,7 +95,7 @@ DRAWN = {
 def c_draws(table, theta_r, seed):
     """SAMPLES angles that the C library draws from the table, spread over the float step that each was
     rounded to: at 89 degrees a bin of a lobe with sigma 1e-4 is only some 30 steps wide."""
-    in_memory = tables.MemoryTable(table.texels, warp_e=table.warp.e, cell_limit=table.cell.limit)
+    in_memory = tables.MemoryTable(np.stack([table.texels, table.slopes], axis=-1), warp_e=table.warp.e)
     model = tables.create(direct_theta=in_memory)
     rng = np.random.default_rng(seed)
     u = rng.random(SAMPLES, dtype=np.float32)

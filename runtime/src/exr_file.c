@@ -1,9 +1,8 @@
-/* OpenEXR files through OpenEXRCore. */
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* OpenEXR files through OpenEXRCore: opening, what is checked before anything is decoded, attributes. */
 #include "exr_file.h"
 
-#include <string.h>
-
-enum { LARGEST_SIDE = 4096 };
+#include "exr_digest.h"
 
 hairlut_result hairlut_exr_fail(const hairlut_exr_file *file, hairlut_result result, const char *format, ...)
 {
@@ -15,6 +14,13 @@ hairlut_result hairlut_exr_fail(const hairlut_exr_file *file, hairlut_result res
         va_end(arguments);
     }
     return result;
+}
+
+hairlut_result hairlut_exr_fail_text(const hairlut_exr_file *file, const char *attribute, hairlut_exr_text text, const char *expected)
+{
+    const int shown = hairlut_exr_length(text) < 60 ? (int)hairlut_exr_length(text) : 60;
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is '%.*s': expected %s; bake the model again", attribute, shown,
+                            text.begin, expected);
 }
 
 /* OpenEXR prints to stderr unless it is given somewhere else to report to; its codes say enough. */
@@ -31,44 +37,97 @@ static hairlut_result fail_exr(const hairlut_exr_file *file, exr_result_t code, 
     const char *reason = exr_get_default_error_message(code);
     if (code == EXR_ERR_OUT_OF_MEMORY)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_MEMORY, "%s: %s", what, reason);
-    if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_UNSUPPORTED, "%s: %s; write it with ZIP compression", what, reason);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "%s: %s; expected an OpenEXR image, bake the table again", what, reason);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "%s: %s: expected a whole OpenEXR image; bake the model again", what, reason);
 }
 
-/* Long paths keep their end: the file's name is there. */
-static void keep_name(hairlut_exr_file *file, const char *path)
+void hairlut_exr_name(hairlut_exr_file *file, const char *path, char *message)
 {
     const size_t length = strlen(path), most = sizeof file->name - 1;
+    memset(file, 0, sizeof *file);
+    file->message = message;
     if (length <= most)
         memcpy(file->name, path, length + 1);
     else
         snprintf(file->name, sizeof file->name, "...%s", path + length - (most - 3));
 }
 
-static hairlut_result check_layout(const hairlut_exr_file *file)
+/* ---- layout --------------------------------------------------------------------------------------------------- */
+
+static int is_allowed(int compression)
+{
+    return compression == EXR_COMPRESSION_NONE || compression == EXR_COMPRESSION_RLE || compression == EXR_COMPRESSION_ZIPS
+           || compression == EXR_COMPRESSION_ZIP;
+}
+
+static hairlut_result fail_compression(const hairlut_exr_file *file, int compression)
+{
+    static const char *const names[] = {"NONE", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"};
+    const int known = compression >= 0 && compression < (int)(sizeof names / sizeof *names);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_UNSUPPORTED,
+                            "compression is %s (number %d): expected NONE, RLE, ZIPS or ZIP; write it with ZIP",
+                            known ? names[compression] : "a newer one", compression);
+}
+
+/* The number of the compression in the first bytes of a file whose header OpenEXR refuses; -1 where none is found. An OpenEXR library
+ * refuses what is newer than itself as corrupt. */
+static int find_compression(const unsigned char *bytes, size_t size)
+{
+    static const char attribute[] = "compression\0compression\0\1\0\0"; /* name, type, size 1 in four bytes, the last of them ends it */
+    for (size_t k = 0; k + sizeof attribute < size; ++k)
+        if (memcmp(bytes + k, attribute, sizeof attribute) == 0)
+            return bytes[k + sizeof attribute];
+    return -1;
+}
+
+static size_t read_start(const char *path, const exr_context_initializer_t *source, unsigned char *bytes, size_t size)
+{
+    if (source && source->read_fn) {
+        const int64_t count = source->read_fn(NULL, source->user_data, bytes, size, 0, NULL);
+        return count > 0 ? (size_t)count : 0;
+    }
+    FILE *stream = fopen(path, "rb");
+    if (!stream)
+        return 0;
+    const size_t count = fread(bytes, 1, size, stream);
+    fclose(stream);
+    return count;
+}
+
+static hairlut_result fail_header(const hairlut_exr_file *file, exr_result_t code, const char *path,
+                                  const exr_context_initializer_t *source)
+{
+    unsigned char start[8192];
+    const int compression = find_compression(start, read_start(path, source, start, sizeof start));
+    if (code != EXR_ERR_OUT_OF_MEMORY && compression >= 0 && !is_allowed(compression))
+        return fail_compression(file, compression);
+    return fail_exr(file, code, "header");
+}
+
+static hairlut_result check_parts(const hairlut_exr_file *file)
 {
     int parts = 0;
     exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
-    const exr_attr_chlist_t *channels = NULL;
     exr_result_t code = exr_get_count(file->context, &parts);
     if (code == EXR_ERR_SUCCESS && parts != 1)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "it has %d parts: expected 1; write each table to its own file",
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "it has %d parts: expected one; write each table to its own file",
                                 parts);
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_storage(file->context, 0, &storage);
-    if (code == EXR_ERR_SUCCESS && storage != EXR_STORAGE_SCANLINE)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "type: expected a scanline image; write it without tiles or deep data");
-    if (code == EXR_ERR_SUCCESS)
-        code = exr_get_channels(file->context, 0, &channels);
     if (code != EXR_ERR_SUCCESS)
         return fail_exr(file, code, "header");
-    const exr_attr_chlist_entry_t *y = channels->entries;
-    if (channels->num_channels != 1 || strcmp(y->name.str, "Y") != 0 || y->pixel_type != EXR_PIXEL_FLOAT
-        || y->x_sampling != 1 || y->y_sampling != 1)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "channels: expected one 32-bit FLOAT channel named Y; do not convert or repack the file");
+    if (storage != EXR_STORAGE_SCANLINE)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "type is %s: expected scanlines; write it without tiles or deep data",
+                                storage == EXR_STORAGE_TILED ? "tiled" : "deep");
     return HAIRLUT_OK;
+}
+
+static hairlut_result check_compression(const hairlut_exr_file *file)
+{
+    exr_compression_t compression = EXR_COMPRESSION_LAST_TYPE;
+    const exr_result_t code = exr_get_compression(file->context, 0, &compression);
+    if (code != EXR_ERR_SUCCESS)
+        return fail_exr(file, code, "compression");
+    return is_allowed((int)compression) ? HAIRLUT_OK : fail_compression(file, (int)compression);
 }
 
 static hairlut_result check_windows(hairlut_exr_file *file)
@@ -79,14 +138,25 @@ static hairlut_result check_windows(hairlut_exr_file *file)
         code = exr_get_display_window(file->context, 0, &display);
     if (code != EXR_ERR_SUCCESS)
         return fail_exr(file, code, "dataWindow");
-    if (data.min.x != 0 || data.min.y != 0 || display.min.x != 0 || display.min.y != 0)
+    if (data.min.x != 0 || data.min.y != 0)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "dataWindow starts at (%d, %d): expected (0, 0); do not crop the file",
+                                data.min.x, data.min.y);
+    if (display.min.x != 0 || display.min.y != 0 || display.max.x != data.max.x || display.max.y != data.max.y)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "dataWindow, displayWindow: expected both to start at (0, 0); do not crop the file");
-    if (data.max.x < 3 || data.max.y < 1 || data.max.x >= LARGEST_SIDE || data.max.y >= LARGEST_SIDE)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE, "dataWindow ends at (%d, %d): expected 4 x 2 to %d x %d texels",
-                                data.max.x, data.max.y, (int)LARGEST_SIDE, (int)LARGEST_SIDE);
-    file->width = data.max.x + 1;
-    file->height = data.max.y + 1;
+                                "displayWindow is (%d, %d) to (%d, %d): expected the dataWindow, (0, 0) to (%d, %d); do not crop the file",
+                                display.min.x, display.min.y, display.max.x, display.max.y, data.max.x, data.max.y);
+    file->width = data.max.x < HAIRLUT_EXR_LARGEST_SIDE ? data.max.x + 1 : HAIRLUT_EXR_LARGEST_SIDE + 1;
+    file->height = data.max.y < HAIRLUT_EXR_LARGEST_SIDE ? data.max.y + 1 : HAIRLUT_EXR_LARGEST_SIDE + 1;
+    return HAIRLUT_OK;
+}
+
+hairlut_result hairlut_exr_check_size(const hairlut_exr_file *file, int least_width, int least_height)
+{
+    const int most = HAIRLUT_EXR_LARGEST_SIDE;
+    if (file->width < least_width || file->height < least_height || file->width > most || file->height > most)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE, "size is %d x %d%s: expected %d x %d to %d x %d; bake the model again",
+                                file->width, file->height, file->width > most || file->height > most ? " or more" : "", least_width,
+                                least_height, most, most);
     return HAIRLUT_OK;
 }
 
@@ -97,15 +167,16 @@ hairlut_result hairlut_exr_open(hairlut_exr_file *file, const char *path, const 
     if (source)
         initializer = *source;
     initializer.error_handler_fn = ignore_report;
-    file->context = NULL;
-    file->message = message;
-    keep_name(file, path);
+    hairlut_exr_name(file, path, message);
     const exr_result_t code = exr_start_read(&file->context, path, &initializer);
-    if (code == EXR_ERR_FILE_ACCESS)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "cannot be opened; check the directory, or bake the tables");
+    file->missing = code == EXR_ERR_FILE_ACCESS;
+    if (file->missing)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "cannot be opened: expected a file; check the directory, or bake the model");
     if (code != EXR_ERR_SUCCESS)
-        return fail_exr(file, code, "header");
-    const hairlut_result result = check_layout(file);
+        return fail_header(file, code, path, source);
+    hairlut_result result = check_parts(file);
+    if (result == HAIRLUT_OK)
+        result = check_compression(file);
     return result == HAIRLUT_OK ? check_windows(file) : result;
 }
 
@@ -115,13 +186,14 @@ void hairlut_exr_close(hairlut_exr_file *file)
         exr_finish(&file->context);
 }
 
+/* ---- attributes ----------------------------------------------------------------------------------------------- */
+
 static hairlut_result fail_attribute(const hairlut_exr_file *file, exr_result_t code, const char *attribute, const char *type)
 {
     if (code == EXR_ERR_NO_ATTR_BY_NAME)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is missing: expected a %s attribute; bake the table again",
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is missing: expected a %s attribute; bake the model again",
                                 attribute, type);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is not a %s: %s; bake the table again", attribute, type,
-                            exr_get_default_error_message(code));
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is not a %s attribute, as expected; bake the model again", attribute, type);
 }
 
 hairlut_result hairlut_exr_int(const hairlut_exr_file *file, const char *attribute, int *value)
@@ -138,33 +210,156 @@ hairlut_result hairlut_exr_string(const hairlut_exr_file *file, const char *attr
 {
     int32_t length = 0;
     const char *begin = NULL;
+    value->begin = value->end = "";
     const exr_result_t code = exr_attr_get_string(file->context, 0, attribute, &length, &begin);
     if (code != EXR_ERR_SUCCESS)
         return fail_attribute(file, code, attribute, "string");
-    value->begin = begin ? begin : "";
-    value->end = value->begin + length;
+    if (begin) {
+        value->begin = begin;
+        value->end = begin + length;
+    }
     return HAIRLUT_OK;
 }
 
+hairlut_result hairlut_exr_expect(const hairlut_exr_file *file, const char *attribute, const char *word)
+{
+    hairlut_exr_text text;
+    char expected[80];
+    const hairlut_result result = hairlut_exr_string(file, attribute, &text);
+    if (result != HAIRLUT_OK || hairlut_exr_equals(text, word))
+        return result;
+    snprintf(expected, sizeof expected, "'%s'", word);
+    return hairlut_exr_fail_text(file, attribute, text, expected);
+}
+
+hairlut_result hairlut_exr_expect_format(const hairlut_exr_file *file, int format, const char *why)
+{
+    enum { NEWEST = 2 };
+    int found = 0;
+    const hairlut_result result = hairlut_exr_int(file, "hairlut.format", &found);
+    if (result != HAIRLUT_OK || found == format)
+        return result;
+    if (found > NEWEST)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_VERSION,
+                                "hairlut.format is %d: expected at most %d; use a newer hairlut library, or bake the model again", found,
+                                (int)NEWEST);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "hairlut.format is %d: expected %d, %s; bake the model again", found, format,
+                            why);
+}
+
+hairlut_result hairlut_exr_model(const hairlut_exr_file *file, char model[HAIRLUT_EXR_MODEL_SIZE])
+{
+    hairlut_exr_text text;
+    const hairlut_result result = hairlut_exr_string(file, "hairlut.model", &text);
+    if (result != HAIRLUT_OK)
+        return result;
+    int printable = 1;
+    for (const char *c = text.begin; c < text.end; ++c)
+        printable = printable && *c >= ' ' && *c <= '~';
+    if (!printable || hairlut_exr_length(text) == 0 || hairlut_exr_length(text) >= HAIRLUT_EXR_MODEL_SIZE)
+        return hairlut_exr_fail_text(file, "hairlut.model", text, "a name of 1 to 63 printable ASCII characters");
+    hairlut_exr_keep(model, text);
+    return HAIRLUT_OK;
+}
+
+hairlut_result hairlut_exr_check_digest(const hairlut_exr_file *file, const float *texels, size_t count, uint32_t *digest)
+{
+    hairlut_exr_text text;
+    uint32_t named = 0;
+    const hairlut_result result = hairlut_exr_string(file, "hairlut.digest", &text);
+    if (result != HAIRLUT_OK)
+        return result;
+    hairlut_exr_text rest = text;
+    if (!hairlut_exr_skip(&rest, "crc32 ") || hairlut_exr_length(rest) != 8 || !hairlut_exr_read_hex(rest.begin, &named))
+        return hairlut_exr_fail_text(file, "hairlut.digest", text, "'crc32 ' and 8 lower-case hexadecimal digits");
+    *digest = hairlut_exr_digest(texels, count);
+    if (*digest != named)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                "hairlut.digest is 'crc32 %08lx', but that of the texels is 'crc32 %08lx': expected texels as they were "
+                                "written, not turned, mirrored or changed; bake the model again",
+                                (unsigned long)named, (unsigned long)*digest);
+    return HAIRLUT_OK;
+}
+
+/* ---- texels --------------------------------------------------------------------------------------------------- */
+
+/* The place of a channel's name among the names; -1 if it is not one of them. */
+static int place_of(const char *name, const char *const *names, int count)
+{
+    for (int k = 0; k < count; ++k)
+        if (strcmp(name, names[k]) == 0)
+            return k;
+    return -1;
+}
+
+static hairlut_result check_channel(const hairlut_exr_file *file, const exr_attr_chlist_entry_t *channel)
+{
+    if (channel->pixel_type != EXR_PIXEL_FLOAT)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channel %.60s is %s: expected 32-bit float; do not convert the file",
+                                channel->name.str, channel->pixel_type == EXR_PIXEL_HALF ? "half" : "uint");
+    if (channel->x_sampling != 1 || channel->y_sampling != 1)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channel %.60s is sampled %d x %d: expected 1 x 1; do not convert the file",
+                                channel->name.str, channel->x_sampling, channel->y_sampling);
+    return HAIRLUT_OK;
+}
+
+hairlut_result hairlut_exr_check_channels(const hairlut_exr_file *file, const char *const *names, int count)
+{
+    const exr_attr_chlist_t *channels = NULL;
+    const exr_result_t code = exr_get_channels(file->context, 0, &channels);
+    if (code != EXR_ERR_SUCCESS)
+        return fail_exr(file, code, "channels");
+    uint32_t found = 0; /* a bit for each name */
+    for (int k = 0; k < channels->num_channels; ++k) {
+        const exr_attr_chlist_entry_t *channel = &channels->entries[k];
+        const int place = place_of(channel->name.str, names, count);
+        if (place < 0)
+            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channels: there is one named '%.60s': expected %d, from '%s' on; "
+                                    "do not repack the file", channel->name.str, count, names[0]);
+        const hairlut_result result = check_channel(file, channel);
+        if (result != HAIRLUT_OK)
+            return result;
+        found |= UINT32_C(1) << place;
+    }
+    for (int k = 0; k < count; ++k)
+        if (!(found >> k & 1))
+            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channels: there is none named '%s': expected %d, from '%s' on; "
+                                    "do not repack the file", names[k], count, names[0]);
+    if (channels->num_channels != count)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channels: there are %d: expected %d", channels->num_channels, count);
+    return HAIRLUT_OK;
+}
+
+/* Where the texels of all rows go. */
+typedef struct target {
+    const char *const *names;
+    int count;
+    float *texels;
+} target;
+
 /* Aims the decoder at the texels of one chunk of rows. */
 static exr_result_t aim(const hairlut_exr_file *file, exr_decode_pipeline_t *decoder, const exr_chunk_info_t *chunk, int first,
-                        float *texels)
+                        const target *to)
 {
     exr_result_t code = first ? exr_decoding_initialize(file->context, 0, chunk, decoder)
                               : exr_decoding_update(file->context, 0, chunk, decoder);
     if (code != EXR_ERR_SUCCESS)
         return code;
-    exr_coding_channel_info_t *channel = decoder->channels;
-    channel->decode_to_ptr = (uint8_t *)(texels + (size_t)chunk->start_y * (size_t)file->width);
-    channel->user_pixel_stride = (int32_t)sizeof(float);
-    channel->user_line_stride = (int32_t)sizeof(float) * file->width;
-    channel->user_bytes_per_element = (int16_t)sizeof(float);
-    channel->user_data_type = EXR_PIXEL_FLOAT;
+    float *row = to->texels + (size_t)chunk->start_y * (size_t)file->width * (size_t)to->count;
+    for (int k = 0; k < decoder->channel_count; ++k) {
+        exr_coding_channel_info_t *channel = &decoder->channels[k];
+        channel->decode_to_ptr = (uint8_t *)(row + place_of(channel->channel_name, to->names, to->count));
+        channel->user_pixel_stride = (int32_t)sizeof(float) * to->count;
+        channel->user_line_stride = (int32_t)sizeof(float) * to->count * file->width;
+        channel->user_bytes_per_element = (int16_t)sizeof(float);
+        channel->user_data_type = EXR_PIXEL_FLOAT;
+    }
     return first ? exr_decoding_choose_default_routines(file->context, 0, decoder) : code;
 }
 
-hairlut_result hairlut_exr_pixels(const hairlut_exr_file *file, float *texels)
+hairlut_result hairlut_exr_pixels(const hairlut_exr_file *file, const char *const *names, int count, float *texels)
 {
+    const target to = {names, count, texels};
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
     exr_result_t code = EXR_ERR_SUCCESS;
     for (int y = 0; y < file->height && code == EXR_ERR_SUCCESS;) {
@@ -174,7 +369,7 @@ hairlut_result hairlut_exr_pixels(const hairlut_exr_file *file, float *texels)
                                         || chunk.height > file->height - y))
             code = EXR_ERR_CORRUPT_CHUNK;
         if (code == EXR_ERR_SUCCESS)
-            code = aim(file, &decoder, &chunk, y == 0, texels);
+            code = aim(file, &decoder, &chunk, y == 0, &to);
         if (code == EXR_ERR_SUCCESS)
             code = exr_decoding_run(file->context, 0, &decoder);
         y += code == EXR_ERR_SUCCESS ? chunk.height : 0;

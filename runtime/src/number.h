@@ -22,8 +22,9 @@ static inline double hairlut_scale_decimal(double value, int exponent)
     return exponent < 0 ? value / power : value * power;
 }
 
-/* Reads an optional sign, digits with an optional point, and an optional exponent at *text (ending at `end`), to within
- * 2 ulp of double, and moves *text behind it. Returns 0, without moving, where no finite number stands. */
+/* Reads a number as luts/FORMAT.md defines it at *text (ending at `end`): an optional sign, 1 to 100 digits with at most one
+ * point among them, an optional exponent; at most 1e300 in size. To within 2 ulp of double; moves *text behind it. Returns 0,
+ * without moving, where no such number stands. */
 static inline int hairlut_read_number(const char **text, const char *end, double *number)
 {
     const char *p = *text;
@@ -57,12 +58,14 @@ static inline int hairlut_read_number(const char **text, const char *end, double
             power = power < 1000 ? 10 * power + (*p - '0') : power;
         exponent += down ? -power : power;
     }
-    if (exponent < -400 || exponent > 300)
+    if (mantissa > 0 && exponent > 300)
         return 0;
-    const double magnitude = hairlut_scale_decimal((double)mantissa, exponent);
+    const double magnitude = mantissa == 0 || exponent < -400 ? 0.0 : hairlut_scale_decimal((double)mantissa, exponent);
+    if (magnitude > 1e300)
+        return 0;
     *number = negative ? -magnitude : magnitude;
     *text = p;
-    return magnitude <= 1e300;
+    return 1;
 }
 
 #endif

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 from . import mixturefile, slopes
 from .errors import HairlutError
 from .exrfile import (
+    MAX_INCLINATION,
     PREFIX,
     REBAKE,
     UNIT,
@@ -35,16 +35,16 @@ from .lobes import (
 )
 from .mixture import constant
 from .model import BakedLobe, BakedModel
+from .parameter import number
 from .table import Table, check_size
 from .warp import Warp
 
 CELL = "rational quadratic"
-OLD_CELL = r"linear|parabola limit=(\S+)"  # of format 1
 OLD_LOBES = {DIRECT: (DIRECT_THETA, DIRECT_PHI), MULTIPLE: (MULTIPLE_THETA, None)}
 CHANNELS = {1: ("Y",), 2: ("Y", "dxdu")}
-KNOT_TOLERANCE = 1e-15
+KNOT_TOLERANCE = 1e-6  # of the smaller tail
 NARROWEST = 1e-12  # rad
-MAX_THETA_R = 2 * np.pi
+LEAST_WIDTH = 1e-6  # rad, of an interval
 
 
 def write_model(directory: Path, model: BakedModel) -> list[Path]:
@@ -77,7 +77,7 @@ def read_model(directory: Path) -> BakedModel:
 
     def table(name: str | None) -> Table | None:
         if name and name not in read_before:
-            read_before[name] = read(directory / f"{name}.exr")
+            read_before[name] = _read(directory / f"{name}.exr", 2 if mixed else 1)
         return read_before[name][0] if name else None
 
     lobes = tuple(BakedLobe(lobe, table(theta), table(phi)) for lobe, (theta, phi) in names.items())
@@ -129,8 +129,19 @@ def attributes(table: Table) -> Attributes:
 
 def read(path: Path) -> tuple[Table, dict[str, float]]:
     """(table, measured errors) of a file. If it is unfit, HairlutError names file, attribute and remedy."""
-    path = Path(path)
-    header, channels = read_image(path, lambda header: CHANNELS[header.format])
+    return _read(Path(path))
+
+
+def _read(path: Path, of_format: int | None = None) -> tuple[Table, dict[str, float]]:
+    """As read; of_format: that of the directory, which is 2 where there is a mixture.exr."""
+
+    def channels_of(header: Header) -> tuple[str, ...]:
+        if of_format and header.format != of_format:
+            beside = f"as there is {'a' if of_format > 1 else 'no'} {mixturefile.FILE} beside it"
+            raise header.failure("format", f"is {header.format}, expected {of_format}, {beside}")
+        return CHANNELS[header.format]
+
+    header, channels = read_image(path, channels_of)
     texels = channels[0]
     height, width = texels.shape
     try:
@@ -144,24 +155,25 @@ def read(path: Path) -> tuple[Table, dict[str, float]]:
     _check_cell(header)
     _check_knots(header, warp, width)
     table = Table(
-        model=header.text("model"),
+        model=header.model(),
         name=name,
         angle=header.one_of("angle", (angle,)),
         azimuth=header.one_of("azimuth", AZIMUTHS if angle == "phi" else (NO_AZIMUTH,)),
         domain=_within(header, "domain", *domain),
-        theta_r_range=_within(header, "theta_r_range", -MAX_THETA_R, MAX_THETA_R),
-        parameters=header.text("parameters", ""),
+        theta_r_range=_within(header, "theta_r_range", -MAX_INCLINATION, MAX_INCLINATION),
+        parameters=_parameters(header),
         warp=warp,
         texels=texels,
         slopes=np.ones_like(texels),
-        log_mass=_log_mass(header, height),
+        log_mass=header.information("log_mass", height),
     )
+    if header.format > 1:
+        header.check_digest(channels)
     _check_angles(path, table)
     if header.format == 1:
         given = slopes.derived(texels, warp.widths(width)).astype(np.float32)
     else:
         given = channels[1]
-        header.check_digest(channels)
         _check_slopes(path, given)
     return replace(table, slopes=given), header.errors()
 
@@ -178,18 +190,17 @@ def _space(header: Header, name: str) -> tuple[str, tuple[float, float]]:
 def _within(header: Header, name: str, low: float, high: float) -> tuple[float, float]:
     """An interval that lies between two numbers, up to the rounding of a float."""
     found = header.interval(name)
-    if np.float32(found[0]) < np.float32(low) or np.float32(found[1]) > np.float32(high):
-        raise header.failure(name, f"is {found[0]!r} {found[1]!r}, expected to lie in {low!r} {high!r}")
+    first, last = np.float32(found)
+    if first < np.float32(low) or last > np.float32(high) or last - first < np.float32(LEAST_WIDTH):
+        expected = f"two increasing angles in radians from {low:.6g} to {high:.6g}"
+        raise header.failure(name, f"is {found[0]!r} {found[1]!r}, expected {expected}")
     return found
 
 
-def _log_mass(header: Header, height: int) -> Array:
-    """Information that a file may lack: NaN then."""
-    return (
-        header.numbers("log_mass", height)
-        if "hairlut.log_mass" in header.attributes
-        else np.full(height, np.nan)
-    )
+def _parameters(header: Header) -> str:
+    """Information that a file may lack."""
+    found = header.attributes.get("hairlut.parameters")
+    return found if isinstance(found, str) else ""
 
 
 def _check_cell(header: Header) -> None:
@@ -197,20 +208,20 @@ def _check_cell(header: Header) -> None:
         header.one_of("cell", (CELL,))
         return
     text = header.text("cell")
-    match = re.fullmatch(OLD_CELL, text)
-    try:
-        known = match and (match[1] is None or 0.0 < float(match[1]) <= 0.95)
-    except ValueError:
-        known = False
-    if not known:
-        raise header.failure("cell", f"is {text!r}, expected 'linear' or 'parabola limit=NUMBER'")
+    name, _, limit = text.partition(" limit=")
+    if text != "linear" and not (name == "parabola" and 0.0 <= number(limit) <= 0.95):
+        raise header.failure("cell", f"is {text!r}, expected 'linear' or 'parabola limit=NUMBER', 0 to 0.95")
 
 
 def _check_knots(header: Header, warp: Warp, width: int) -> None:
-    knots, expected = header.numbers("knots", width), warp.u(width)
-    if (abs(knots - expected) > KNOT_TOLERANCE).any():
-        i = int(np.argmax(abs(knots - expected)))
-        found = f"has {knots[i]!r} at column {i}, expected {expected[i]!r} from the warp {warp}"
+    """The knots are in the file for readers that do not know the warp: here they guard against a warp that
+    is not theirs."""
+    knots, (tail, upper) = header.numbers("knots", width), warp.knots(width)
+    wrong = ~(abs(np.where(upper, 1 - knots, knots) - tail) <= KNOT_TOLERANCE * tail + 1e-15)
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        expected = warp.u(width)[i]
+        found = f"has {knots[i]!r} at column {i}, expected {expected!r} from the warp {warp}"
         raise header.failure("knots", found)
 
 

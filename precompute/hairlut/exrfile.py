@@ -7,6 +7,8 @@ checked: one part of scanlines, a harmless size and compression, and exactly the
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -20,14 +22,18 @@ from .errors import HairlutError
 from .files import replace_whole
 from .lobes import Array
 from .nulldevice import null_device
+from .parameter import number
 
 FORMAT = 2
 UNIT = "rad"
 PREFIX = "hairlut."
 ERROR_PREFIX = "hairlut.error."
+MAX_INCLINATION = 1.571  # rad, a little more than pi/2: beyond it an inclination is in degrees
+MODEL_NAME = r"[ -~]{1,63}"
 REBAKE = "bake it again with 'hairlut bake'"
 MAGIC = b"\x76\x2f\x31\x01"
 MAX_SIDE = 4096
+DEEP = 0x800  # a flag of the version field
 COMPRESSIONS = ("NO_COMPRESSION", "RLE_COMPRESSION", "ZIPS_COMPRESSION", "ZIP_COMPRESSION")
 
 Attributes = dict[str, str | int]
@@ -82,6 +88,7 @@ def read_image(path: Path, expected: Callable[[Header], Sequence[str]]) -> tuple
     _refuse_other_formats(header)
     names = expected(header)
     _check_image(header, names)
+    _refuse_deep_data(path)
     channels = _open(path, header_only=False).channels()
     return header, [_floats(path, name, channels[name].pixels) for name in names]
 
@@ -137,14 +144,13 @@ class Header:
         return value
 
     def numbers(self, name: str, count: int | None = None) -> Array:
-        """As many finite numbers, or at least one if count is None."""
+        """As many finite numbers, one space between, or at least one if count is None."""
         text = self.text(name)
-        try:
-            values = np.array([float(word) for word in text.split()])
-        except ValueError:
-            values = np.array([np.nan])
-        if len(values) != (count or max(1, len(values))) or not np.isfinite(values).all():
-            raise self.failure(name, f"is {text[:60]!r}, expected {count or 'one or more'} finite numbers")
+        values = np.array([number(word) for word in text.split(" ")])
+        if len(values) != (count or len(values)) or not np.isfinite(values).all():
+            raise self.failure(
+                name, f"is {text[:60]!r}, expected {count or 'one or more'} numbers, one space between"
+            )
         return values
 
     def interval(self, name: str) -> tuple[float, float]:
@@ -160,10 +166,25 @@ class Header:
         except HairlutError as error:
             raise self.failure(name, f"is {text!r} ({error})") from error
 
+    def information(self, name: str, count: int = 1) -> Array:
+        """Numbers that nothing depends on: NaN where the file lacks them or says something else."""
+        try:
+            return self.numbers(name, count)
+        except HairlutError:
+            return np.full(count, np.nan)
+
     def errors(self) -> dict[str, float]:
         """The measured errors, as many as the file has."""
         names = sorted(name for name in self.attributes if name.startswith(ERROR_PREFIX))
-        return {name[len(ERROR_PREFIX) :]: float(self.numbers(name[len(PREFIX) :], 1)[0]) for name in names}
+        found = {name[len(ERROR_PREFIX) :]: self.information(name[len(PREFIX) :])[0] for name in names}
+        return {name: float(value) for name, value in found.items() if not math.isnan(value)}
+
+    def model(self) -> str:
+        """The model's name."""
+        name = self.text("model")
+        if not re.fullmatch(MODEL_NAME, name):
+            raise self.failure("model", f"is {name[:60]!r}, expected 1 to 63 printable ASCII characters")
+        return name
 
     def check_digest(self, channels: Sequence[Array]) -> str:
         """The digest of the channels; HairlutError if the file was written with another."""
@@ -187,6 +208,14 @@ def _refuse_other_formats(header: Header) -> None:
     if version > FORMAT:
         reason = f"is {version}, expected {FORMAT} or less"
         raise header.failure("format", reason, "use a newer hairlut to read this file")
+
+
+def _refuse_deep_data(path: Path) -> None:
+    """The binding reads an image of plain scanlines that says of itself to be deep."""
+    with path.open("rb") as file:
+        flags = int.from_bytes(file.read(8)[4:], "little")
+    if flags & DEEP:
+        raise HairlutError(f"{path}: is marked as deep data, expected scanlines: {REBAKE}")
 
 
 def _check_image(header: Header, expected: Sequence[str]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from .errors import HairlutError
 from .exrfile import (
+    MAX_INCLINATION,
     REBAKE,
     UNIT,
     Attributes,
@@ -20,7 +21,7 @@ from .exrfile import (
     read_image,
     write_image,
 )
-from .lobes import LOBE_NAME, MAX_LOBES, space
+from .lobes import LOBE_NAME, MAX_LOBES, Array, space
 from .mixture import Mixture
 from .model import BakedLobe, BakedModel
 
@@ -76,9 +77,12 @@ def read(path: Path) -> MixtureFile:
     header.one_of("unit", (UNIT,))
     header.one_of("axes", (AXES,), "this reader knows the axes theta_r and offset")
     lobes = _lobes(header)
-    axes = [header.numbers(f"axis.{name}") for name in AXES.split()]
-    _check_size(path, axes, channels[0].shape)
     mirrored = header.one_of("mirrored", ("0", "1")) == "1"
+    rows, columns = channels[0].shape
+    axes = [
+        _axis(header, "axis.theta_r", rows, -MAX_INCLINATION, MAX_INCLINATION),
+        _axis(header, "axis.offset", columns, 0.0 if mirrored else -1.0, 1.0),
+    ]
     header.check_digest(channels)
     share, turn = (np.stack(channels[first::2]).astype(float) for first in (0, 1))
     try:
@@ -86,7 +90,7 @@ def read(path: Path) -> MixtureFile:
     except HairlutError as error:
         raise HairlutError(f"{path}: {error}: {REBAKE}") from error
     tables, digests = _tables(header, lobes)
-    return MixtureFile(header.text("model"), mixture, tables, digests, header.errors())
+    return MixtureFile(header.model(), mixture, tables, digests, header.errors())
 
 
 def _lobes(header: Header) -> tuple[str, ...]:
@@ -105,13 +109,13 @@ def _channel_names(lobes: tuple[str, ...]) -> list[str]:
     return [f"{name}.{what}" for name in lobes for what in ("share", "turn")]
 
 
-def _check_size(path: Path, axes: list[np.ndarray], shape: tuple[int, int]) -> None:
-    expected = tuple(len(axis) for axis in axes)
-    if shape != expected:
-        raise HairlutError(
-            f"{path}: has {shape[0]} rows and {shape[1]} columns, expected {expected[0]} and {expected[1]}, "
-            f"the numbers of theta_r and of offsets in its header: {REBAKE}"
-        )
+def _axis(header: Header, name: str, count: int, low: float, high: float) -> Array:
+    """A number for each row or column, increasing also as 32-bit floats, from low to high."""
+    nodes = header.numbers(name, count)
+    if nodes.min() < low or nodes.max() > high or not (np.diff(nodes.astype(np.float32)) > 0).all():
+        expected = f"increasing numbers from {low:.6g} to {high:.6g}"
+        raise header.failure(name, f"is {header.text(name)[:60]!r}, expected {expected}")
+    return nodes
 
 
 def _tables(

@@ -48,7 +48,11 @@ class Warp:
     @classmethod
     def parse(cls, text: str) -> "Warp":
         """From "uniform" or "octaves e=NUMBER", as in a file's header."""
-        return cls(*parameter.parse(text, "warp", "e", "'octaves e=NUMBER' or 'uniform'"))
+        expected = "'octaves e=NUMBER' or 'uniform'"
+        name, e = parameter.parse(text, "warp", "e", expected)
+        if name == "uniform" != text:
+            raise HairlutError(f"warp {text!r} cannot be read: expected {expected}")
+        return cls(name, e)
 
     def scale(self, width: int) -> tuple[float, float]:
         """(F0, k): F(m + e) = F0 + k c for octaves; m = k c for the uniform warp, with F0 = 0."""

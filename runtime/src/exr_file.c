@@ -2,6 +2,7 @@
 /* OpenEXR files through OpenEXRCore: opening, what is checked before anything is decoded, attributes. */
 #include "exr_file.h"
 
+#include "exr_compression.h"
 #include "exr_digest.h"
 
 hairlut_result hairlut_exr_fail(const hairlut_exr_file *file, hairlut_result result, const char *format, ...)
@@ -16,11 +17,20 @@ hairlut_result hairlut_exr_fail(const hairlut_exr_file *file, hairlut_result res
     return result;
 }
 
+/* The first 60 bytes of a text on one line. */
+static void show(char shown[61], hairlut_exr_text text)
+{
+    size_t length = 0;
+    for (; length < 60 && length < hairlut_exr_length(text); ++length)
+        shown[length] = text.begin[length] >= ' ' && text.begin[length] <= '~' ? text.begin[length] : '?';
+    shown[length] = '\0';
+}
+
 hairlut_result hairlut_exr_fail_text(const hairlut_exr_file *file, const char *attribute, hairlut_exr_text text, const char *expected)
 {
-    const int shown = hairlut_exr_length(text) < 60 ? (int)hairlut_exr_length(text) : 60;
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is '%.*s': expected %s; bake the model again", attribute, shown,
-                            text.begin, expected);
+    char shown[61];
+    show(shown, text);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is '%s': expected %s; bake the model again", attribute, shown, expected);
 }
 
 /* OpenEXR prints to stderr unless it is given somewhere else to report to; its codes say enough. */
@@ -53,54 +63,12 @@ void hairlut_exr_name(hairlut_exr_file *file, const char *path, char *message)
 
 /* ---- layout --------------------------------------------------------------------------------------------------- */
 
-static int is_allowed(int compression)
+static hairlut_result check_compression(const hairlut_exr_file *file, int compression)
 {
-    return compression == EXR_COMPRESSION_NONE || compression == EXR_COMPRESSION_RLE || compression == EXR_COMPRESSION_ZIPS
-           || compression == EXR_COMPRESSION_ZIP;
-}
-
-static hairlut_result fail_compression(const hairlut_exr_file *file, int compression)
-{
-    static const char *const names[] = {"NONE", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"};
-    const int known = compression >= 0 && compression < (int)(sizeof names / sizeof *names);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_UNSUPPORTED,
-                            "compression is %s (number %d): expected NONE, RLE, ZIPS or ZIP; write it with ZIP",
-                            known ? names[compression] : "a newer one", compression);
-}
-
-/* The number of the compression in the first bytes of a file whose header OpenEXR refuses; -1 where none is found. An OpenEXR library
- * refuses what is newer than itself as corrupt. */
-static int find_compression(const unsigned char *bytes, size_t size)
-{
-    static const char attribute[] = "compression\0compression\0\1\0\0"; /* name, type, size 1 in four bytes, the last of them ends it */
-    for (size_t k = 0; k + sizeof attribute < size; ++k)
-        if (memcmp(bytes + k, attribute, sizeof attribute) == 0)
-            return bytes[k + sizeof attribute];
-    return -1;
-}
-
-static size_t read_start(const char *path, const exr_context_initializer_t *source, unsigned char *bytes, size_t size)
-{
-    if (source && source->read_fn) {
-        const int64_t count = source->read_fn(NULL, source->user_data, bytes, size, 0, NULL);
-        return count > 0 ? (size_t)count : 0;
-    }
-    FILE *stream = fopen(path, "rb");
-    if (!stream)
-        return 0;
-    const size_t count = fread(bytes, 1, size, stream);
-    fclose(stream);
-    return count;
-}
-
-static hairlut_result fail_header(const hairlut_exr_file *file, exr_result_t code, const char *path,
-                                  const exr_context_initializer_t *source)
-{
-    unsigned char start[8192];
-    const int compression = find_compression(start, read_start(path, source, start, sizeof start));
-    if (code != EXR_ERR_OUT_OF_MEMORY && compression >= 0 && !is_allowed(compression))
-        return fail_compression(file, compression);
-    return fail_exr(file, code, "header");
+    if (hairlut_exr_is_allowed(compression))
+        return HAIRLUT_OK;
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_UNSUPPORTED, "compression is %s (number %d): expected NONE, RLE, ZIPS or ZIP; write it with ZIP",
+                            hairlut_exr_compression_name(compression), compression);
 }
 
 static hairlut_result check_parts(const hairlut_exr_file *file)
@@ -118,16 +86,9 @@ static hairlut_result check_parts(const hairlut_exr_file *file)
     if (storage != EXR_STORAGE_SCANLINE)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "type is %s: expected scanlines; write it without tiles or deep data",
                                 storage == EXR_STORAGE_TILED ? "tiled" : "deep");
-    return HAIRLUT_OK;
-}
-
-static hairlut_result check_compression(const hairlut_exr_file *file)
-{
     exr_compression_t compression = EXR_COMPRESSION_LAST_TYPE;
-    const exr_result_t code = exr_get_compression(file->context, 0, &compression);
-    if (code != EXR_ERR_SUCCESS)
-        return fail_exr(file, code, "compression");
-    return is_allowed((int)compression) ? HAIRLUT_OK : fail_compression(file, (int)compression);
+    code = exr_get_compression(file->context, 0, &compression);
+    return code == EXR_ERR_SUCCESS ? check_compression(file, (int)compression) : fail_exr(file, code, "compression");
 }
 
 static hairlut_result check_windows(hairlut_exr_file *file)
@@ -172,11 +133,13 @@ hairlut_result hairlut_exr_open(hairlut_exr_file *file, const char *path, const 
     file->missing = code == EXR_ERR_FILE_ACCESS;
     if (file->missing)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "cannot be opened: expected a file; check the directory, or bake the model");
+    const int named = hairlut_exr_named_compression(path, source);
+    hairlut_result result = named >= 0 ? check_compression(file, named) : HAIRLUT_OK;
+    if (result != HAIRLUT_OK)
+        return result;
     if (code != EXR_ERR_SUCCESS)
-        return fail_header(file, code, path, source);
-    hairlut_result result = check_parts(file);
-    if (result == HAIRLUT_OK)
-        result = check_compression(file);
+        return fail_exr(file, code, "header");
+    result = check_parts(file);
     return result == HAIRLUT_OK ? check_windows(file) : result;
 }
 

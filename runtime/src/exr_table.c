@@ -15,14 +15,9 @@ static const double half_pi = 1.5707963267948966, two_pi = 6.283185307179586, la
 /* The file's own account of which table it is: a renamed file is refused here. */
 static hairlut_result read_identity(const hairlut_exr_file *file, const hairlut_exr_kind *kind, hairlut_exr_table *out)
 {
-    hairlut_exr_text text;
     hairlut_result result = hairlut_exr_model(file, out->model);
     if (result == HAIRLUT_OK)
-        result = hairlut_exr_string(file, "hairlut.table", &text);
-    if (result == HAIRLUT_OK && !hairlut_exr_equals(text, kind->table))
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "hairlut.table is '%.*s': expected '%s', as the file's name says; give the file its own name back",
-                                (int)(hairlut_exr_length(text) < 60 ? hairlut_exr_length(text) : 60), text.begin, kind->table);
+        result = hairlut_exr_expect(file, "hairlut.table", kind->table);
     if (result == HAIRLUT_OK)
         result = hairlut_exr_expect(file, "hairlut.angle", kind->is_azimuth ? "phi" : "theta_i");
     return result == HAIRLUT_OK ? hairlut_exr_expect(file, "hairlut.unit", "rad") : result;

@@ -150,17 +150,15 @@ def test_attributes_that_a_file_may_lack(path, table, name):
         ("azimuth", "wrapped", "is 'wrapped', expected 'difference' or 'sum'"),
         ("table", "multiple_theta", "is 'multiple_theta', expected 'direct_phi': rename the file"),
         ("theta_r_range", "1.0 -1.0", "expected two increasing numbers"),
-        ("theta_r_range", "1.0", "expected 2 finite numbers"),
-        ("domain", "0.0 inf", "expected 2 finite numbers"),
-        ("domain", "zero one", "expected 2 finite numbers"),
+        ("theta_r_range", "1.0", "expected 2 numbers"),
+        ("domain", "0.0 inf", "expected 2 numbers"),
+        ("domain", "zero one", "expected 2 numbers"),
         ("warp", "cubic", "is 'cubic' (warp cubic is not known: expected 'octaves"),
         ("warp", "octaves e=0.5", None),
         ("cell", "parabola limit=0.9", "expected 'rational quadratic'"),
         ("digest", "crc32 00000000", "they were changed after they were written"),
-        ("domain", "0.0 7.0", "expected to lie in"),
-        ("knots", "0.0 1.0", "expected 12 finite numbers"),
-        ("log_mass", "0.0", "expected 5 finite numbers"),
-        ("error.relative_variance", "small", "expected 1 finite numbers"),
+        ("domain", "0.0 7.0", "expected two increasing angles in radians from 0 to 6.28319"),
+        ("knots", "0.0 1.0", "expected 12 numbers"),
     ],
 )
 def test_wrong_attribute(path, name, value, reason):
@@ -173,7 +171,7 @@ def test_wrong_attribute(path, name, value, reason):
 def test_knots_that_are_not_the_warps(path):
     with OpenEXR.File(str(path)) as file:
         knots = file.header()["hairlut.knots"].split()
-    knots[3] = repr(float(knots[3]) + 1e-12)
+    knots[3] = repr(float(knots[3]) * (1 + 3e-6))
     rewrite(path, {"hairlut.knots": " ".join(knots)})
     assert "attribute hairlut.knots has" in refusal(path)
     assert "at column 3" in refusal(path)

@@ -1,9 +1,11 @@
-// Copies a table file with the OpenEXR library that the loader is built with, older than the one in Python:
+// Copies a file with the OpenEXR library that the loader is built with, older than the one in Python:
 //
 //     make_exr SOURCE TARGET N       the same texels and attributes with compression N (0 NONE, 1 RLE .. 4 PIZ)
 #include <cstdlib>
+#include <list>
 #include <vector>
 
+#include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
@@ -16,9 +18,13 @@ int main(int argc, char **argv)
     Imf::InputFile source(argv[1]);
     Imf::Header header = source.header();
     const int width = header.dataWindow().max.x + 1, height = header.dataWindow().max.y + 1;
-    std::vector<float> texels(static_cast<size_t>(width) * height);
+    std::list<std::vector<float>> planes;
     Imf::FrameBuffer buffer;
-    buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(texels.data()), sizeof(float), sizeof(float) * width));
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+        planes.emplace_back(static_cast<size_t>(width) * height);
+        char *base = reinterpret_cast<char *>(planes.back().data());
+        buffer.insert(channel.name(), Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * width));
+    }
     source.setFrameBuffer(buffer);
     source.readPixels(0, height - 1);
     header.compression() = static_cast<Imf::Compression>(std::atoi(argv[3]));

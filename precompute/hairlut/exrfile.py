@@ -85,9 +85,12 @@ def read_image(path: Path, expected: Callable[[Header], Sequence[str]]) -> tuple
     HairlutError, which names file, attribute and remedy, if the file is no such image.
     """
     header = Header(path, dict(_open(path, header_only=True).header()))
-    _refuse_other_formats(header)
-    names = expected(header)
-    _check_image(header, names)
+    try:
+        _refuse_other_formats(header)
+        names = expected(header)
+        _check_image(header, names)
+    except UnicodeDecodeError as error:  # of the binding, where it makes names and values Python's
+        raise HairlutError(f"{path}: the header is damaged ({error.reason}): {REBAKE}") from error
     _refuse_deep_data(path)
     channels = _open(path, header_only=False).channels()
     return header, [_floats(path, name, channels[name].pixels) for name in names]
@@ -134,7 +137,7 @@ class Header:
         if value is None:
             raise self.failure(name, "is missing")
         if not isinstance(value, str):
-            raise self.failure(name, f"is {value!r}, expected text")
+            raise self.failure(name, f"has the type {type(value).__name__}, expected text")
         return value
 
     def one_of(self, name: str, expected: Sequence[str], remedy: str = REBAKE) -> str:

@@ -31,14 +31,13 @@ def decode(path: Path, data: bytes, expected: str) -> str:
     """The text of a file's bytes, as read_text."""
     if data.startswith(_MARKS_16) or b"\0" in data[:4]:
         raise HairlutError(f"{path}: the text is UTF-16, expected UTF-8: {SAVE_AS}")
+    if b"\0" in data:
+        line = data.count(b"\n", 0, data.index(b"\0")) + 1
+        raise HairlutError(f"{path}: is no text, line {line} contains a zero byte: expected {expected}")
     try:
-        text = data.decode("utf-8-sig")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise HairlutError(
             f"{path}: line {line}: byte {data[error.start]:#04x} is not UTF-8, perhaps Latin-1: {SAVE_AS}"
         ) from None
-    if "\0" in text:
-        line = text.count("\n", 0, text.index("\0")) + 1
-        raise HairlutError(f"{path}: line {line} contains a zero byte: expected {expected}")
-    return text

@@ -6,36 +6,78 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import exr
+from .. import exr, mixturefile
 from ..table import Table
 from . import OK
 
 EXAMPLES = """examples:
   hairlut inspect luts/fitted/direct_theta.exr
-  hairlut inspect luts/fitted/direct_theta.exr --json | jq .errors"""
+  hairlut inspect luts/brown/mixture.exr
+  hairlut inspect luts/fitted/*.exr --json | jq '.[].errors'"""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
     parser = subparsers.add_parser(
         "inspect",
         help="print a texture's header, size, errors and rows",
-        description="Prints a texture's header and measured errors, and for each row the mass of the lobe "
-        "inside its domain and the width of the narrowest cell.",
+        description="Prints a texture's header and measured errors: of a table, for each row the mass of the "
+        "lobe inside its domain and the width of the narrowest cell; of mixture.exr, each lobe's tables and "
+        "the range of its shares and turns.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", type=Path, nargs="+")
+    parser.add_argument("file", type=Path, nargs="+", help="a .exr file of a model")
     parser.add_argument("--json", action="store_true", help="print JSON, one array of files")
     return parser
 
 
 def run(args: argparse.Namespace) -> int:
-    reports = [describe(path, *exr.read(path)) for path in args.file]
+    reports = [
+        describe_mixture(path, mixturefile.read(path))
+        if path.name == mixturefile.FILE
+        else describe(path, *exr.read(path))
+        for path in args.file
+    ]
     if args.json:
         print(json.dumps(reports, indent=1))
         return OK
-    print("\n\n".join(map(_text, reports)))
+    print("\n\n".join(_mixture_text(r) if "lobes" in r else _text(r) for r in reports))
     return OK
+
+
+def describe_mixture(path: Path, file: mixturefile.MixtureFile) -> dict:
+    """A mixture as plain data; share and turn: a row for each theta_r, and in it a number for each offset."""
+    mixture = file.mixture
+    return {
+        "file": str(path),
+        "model": file.model,
+        "theta_r": mixture.theta_r.tolist(),
+        "offset": mixture.offset.tolist(),
+        "mirrored": mixture.mirrored,
+        "errors": file.errors,
+        "lobes": [
+            {"name": name, "tables": [table for table in file.tables[name] if table]}
+            | {"share": mixture.share[k].tolist(), "turn": mixture.turn[k].tolist()}
+            for k, name in enumerate(mixture.lobes)
+        ],
+    }
+
+
+def _mixture_text(report: dict) -> str:
+    rows, columns = len(report["theta_r"]), len(report["offset"])
+    lines = [f"{report['file']}: model {report['model']}, {len(report['lobes'])} lobes"]
+    lines += [
+        f"  {name:12}{len(values)} from {values[0]:.6g} to {values[-1]:.6g}"
+        for name, values in (("theta_r", report["theta_r"]), ("offset", report["offset"]))
+    ]
+    lines += [f"  {'mirrored':12}{'yes' if report['mirrored'] else 'no'}"]
+    lines += [f"  error.{name:18} {value:.3e}" for name, value in report["errors"].items()]
+    lines += ["", f"  over {rows} theta_r and {columns} offsets: share, turn [deg], tables"]
+    for lobe in report["lobes"]:
+        share, turn = np.array(lobe["share"]), np.degrees(lobe["turn"])
+        ranges = f"{share.min():.3f} to {share.max():.3f}  {turn.min():9.2f} to {turn.max():.2f}"
+        lines.append(f"  {lobe['name']:12}{ranges}  {', '.join(lobe['tables'])}")
+    return "\n".join(lines)
 
 
 def describe(path: Path, table: Table, errors: dict[str, float]) -> dict:
@@ -66,7 +108,7 @@ def _text(report: dict) -> str:
         f"({report['bytes_of_file']} in the file)"
     ]
     lines += [f"  {name:24}{value}" for name, value in report["header"].items() if name not in LONG]
-    lines += [f"  error.{name:18}{value:.3e}" for name, value in report["errors"].items()]
+    lines += [f"  error.{name:18} {value:.3e}" for name, value in report["errors"].items()]
     if not report["errors"]:
         lines += ["  errors                  not measured"]
     lines += [

@@ -3,7 +3,9 @@
 import argparse
 from pathlib import Path
 
+from .. import exr, mixturefile
 from ..errors import HairlutError
+from ..lobes import NO_FORMULA
 from . import OK
 
 EXAMPLES = """examples:
@@ -34,13 +36,21 @@ def run(args: argparse.Namespace) -> int:
     from ..verify import lobe_of
 
     model = find(args.model) if args.model else None
-    files = [
-        file for path in args.path for file in (sorted(path.rglob("*.exr")) if path.is_dir() else [path])
-    ]
-    if not files:
-        raise HairlutError(
-            f"{', '.join(map(str, args.path))}: no .exr file below: expected <model>/<table>.exr"
-        )
+    files = [file for path in args.path for file in (tables_below(path) if path.is_dir() else [path])]
     for file in files:
         print(plot.plot_file(file, lobe_of(file, model), args.out))
     return OK
+
+
+def tables_below(folder: Path) -> list[Path]:
+    """The tables below a directory, apart from those that were fitted to a BSDF: no formula is known to draw
+    them against."""
+    found = [file for file in sorted(folder.rglob("*.exr")) if file.name != mixturefile.FILE]
+    if not found:
+        raise HairlutError(f"{folder}: no .exr file in this directory: expected <model>/<table>.exr")
+    drawn = [file for file in found if exr.read(file)[0].parameters != NO_FORMULA]
+    if not drawn:
+        raise HairlutError(
+            f"{folder}: its tables were fitted to a BSDF: no formula is known to draw them against"
+        )
+    return drawn

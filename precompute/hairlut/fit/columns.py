@@ -113,6 +113,8 @@ class Columns:
 def read_columns(path: Path) -> Columns:
     """The columns of a file, each checked; HairlutError naming the file, the line and what was expected."""
     data = read_bytes(path, EXPECTED)
+    if path.suffix == ".toml":
+        raise HairlutError(f"{path}: is a model, not data: bake it with hairlut bake --model {path}")
     if path.suffix == ".npz":
         found, lines = list(read_npz(path).items()), None
     elif data.startswith((ARRAY, ARCHIVE)):

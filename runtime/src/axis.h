@@ -12,7 +12,7 @@
  *     B = D0 Z - D1 X,  R = sqrt(B^2 + 4 w^2 X Z),   xi : q = 2 w X : R + B where B >= 0, else R - B : 2 w Z,
  *     density = 1 / |dx/dm| = h |G| / R.
  *
- * All is counted from the nearer end of the u axis: m is min(u, 1-u), and in the high half of a row w and D are negative. */
+ * All is counted from the nearer end of the u axis: m is min(u, 1-u), and in the high half of a row w and D are stored negative. */
 #ifndef HAIRLUT_AXIS_H
 #define HAIRLUT_AXIS_H
 
@@ -183,24 +183,24 @@ typedef struct hairlut_inverse {
 } hairlut_inverse;
 
 /* Angles are multiplied by HAIRLUT_SCALE, through the weights of the two rows: no product of four of them, as in R^2, leaves the
- * range of a float, whether a cell is 1e-12 or 2 pi rad wide. */
+ * range of a float, whether a cell is 1e-12 or 2 pi rad wide. In the high half also by -1: w, D, X and Z are never negative. */
 HAIRLUT_INLINE hairlut_inverse hairlut_axis_inverse(const hairlut_axis *axis, const hairlut_search *search, int found)
 {
     hairlut_inverse inverse;
     const int i = hairlut_axis_nearer(axis, found, &inverse.high);
-    const float t = search->row.t, *knot = axis->knots + HAIRLUT_KNOT * i, x = HAIRLUT_SCALE * search->x;
-    const hairlut_cell cell =
-        hairlut_axis_cell(axis, search->row.j, hairlut_quad_all(HAIRLUT_SCALE * (1.0f - t)), hairlut_quad_all(HAIRLUT_SCALE * t), i,
-                          inverse.high);
-    const float w = cell.w, from = x - cell.x0, to = w - from;
-    const float wx = hairlut_max(w * from, hairlut_constant(0.0f)), wz = hairlut_max(w * to, hairlut_constant(0.0f));
+    const float t = search->row.t, *knot = axis->knots + HAIRLUT_KNOT * i;
+    const float scale = inverse.high ? -HAIRLUT_SCALE : HAIRLUT_SCALE;
+    const hairlut_cell cell = hairlut_axis_cell(axis, search->row.j, hairlut_quad_all(scale * (1.0f - t)), hairlut_quad_all(scale * t), i,
+                                                inverse.high);
+    const float w = cell.w, from = hairlut_clamp(scale * search->x - cell.x0, hairlut_constant(0.0f), w), to = w - from;
+    const float wx = w * from, wz = w * to;
     const float balance = cell.d0 * to - cell.d1 * from;
     const float root = sqrtf(balance * balance + 4.0f * (wx * wz)), sum = root + fabsf(balance);
     inverse.a = balance >= 0.0f ? 2.0f * wx : sum;
     inverse.b = balance >= 0.0f ? sum : 2.0f * wz;
     const float total = inverse.a + inverse.b, unit = 1.0f / total, xi = inverse.a * unit, q = inverse.b * unit;
     inverse.root = root;
-    inverse.bend = knot[2] * fabsf(w * (xi * xi + q * q) + (cell.d0 + cell.d1) * (xi * q));
+    inverse.bend = knot[2] * (w * (xi * xi + q * q) + (cell.d0 + cell.d1) * (xi * q));
     inverse.knot = knot[0];
     inverse.width = knot[2] * (1.0f / HAIRLUT_SCALE);
     return inverse;

@@ -28,7 +28,6 @@ typedef struct hairlut_batch {
 extern const hairlut_batch hairlut_batch_portable;
 #ifdef HAIRLUT_BATCH_X86
 extern const hairlut_batch hairlut_batch_avx2;
-extern const hairlut_batch hairlut_batch_avx512;
 #endif
 #ifdef HAIRLUT_BATCH_NEON
 extern const hairlut_batch hairlut_batch_neon;

@@ -7,20 +7,5 @@
 
 #include "batch_kernel.h"
 
-void hairlut_fetch_draws_avx2(const hairlut_axis *axis, size_t n, draws *q)
-{
-    fetch_draws(axis, n, q);
-}
-
-void hairlut_search_small_avx2(const hairlut_axis *axis, size_t n, searches *q)
-{
-    search_small(axis, n, q);
-}
-
-void hairlut_fetch_searches_avx2(const hairlut_axis *axis, size_t n, searches *q)
-{
-    fetch_searches(axis, n, q);
-}
-
 const hairlut_batch hairlut_batch_avx2 = {"avx2", sample_lobe, pdf_lobe, sample_hair, pdf_hair};
 #endif

@@ -16,10 +16,6 @@ enum { BLOCK = 128, ROOM = BLOCK + LANES };
 #define HAIRLUT_UNROLLED
 #endif
 
-#ifndef HAIRLUT_COUNT
-#define HAIRLUT_COUNT hairlut_count
-#endif
-
 /* Samples on an axis. What a pass no longer needs makes room for what it finds: all of it is to stay in the first-level cache,
  * beside the table. */
 typedef struct draws {
@@ -39,8 +35,8 @@ typedef struct searches {
     int cell[BLOCK];   /* as far as it is known, counted from the low end */
     int at[BLOCK];     /* where to read on: an offset among the rows, then among the cells */
     int knot[BLOCK];   /* the offset of the cell's knot */
-    float t[BLOCK];    /* the weight of the row above; from fetch_searches on: the blended cell's w, scaled as d0 and d1 */
-    float x[BLOCK];    /* the angle; from fetch_searches on: scaled, less the blended cell's x0 */
+    float t[BLOCK];    /* the weight of the row above; from fetch_searches on: the blended cell's w, scaled, as d0 and d1 */
+    float x[BLOCK];    /* the angle; from fetch_searches on: its distance from the cell's nearer end, scaled */
     float d0[BLOCK];
     float d1[BLOCK];
     float width[BLOCK]; /* h, scaled */
@@ -100,7 +96,7 @@ HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t 
 #else
     HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
-        counts[k] = HAIRLUT_COUNT(groups + q->at[k], above + q->at[k], q->t[k], q->x[k], size);
+        counts[k] = hairlut_count(groups + q->at[k], above + q->at[k], q->t[k], q->x[k], size);
 #endif
 }
 
@@ -147,19 +143,6 @@ static inline void search_large(const hairlut_axis *axis, size_t n, searches *q)
     search_groups(axis, n, q, HAIRLUT_GROUP);
 }
 
-/* Three passes that sort what they load for single samples gain nothing from more than eight lanes (tests/bench/NOTES.md): the
- * kernels in AVX-512, whose processors all have AVX2, call those in AVX2. */
-#ifdef HAIRLUT_BATCH_X86
-void hairlut_fetch_draws_avx2(const hairlut_axis *axis, size_t n, draws *q);
-void hairlut_search_small_avx2(const hairlut_axis *axis, size_t n, searches *q);
-void hairlut_fetch_searches_avx2(const hairlut_axis *axis, size_t n, searches *q);
-#endif
-
-#ifdef HAIRLUT_CELLS_BY_AVX2
-#define fetch_draws hairlut_fetch_draws_avx2
-#define search_small hairlut_search_small_avx2
-#define fetch_searches hairlut_fetch_searches_avx2
-#else
 /* hairlut_axis_cell */
 static inline cells load_cells(const hairlut_axis *axis, const int *at, real below, real above)
 {
@@ -197,17 +180,17 @@ static inline void fetch_searches(const hairlut_axis *axis, size_t n, searches *
 {
     for (size_t s = 0; s < n; s += LANES) {
         real knot[HAIRLUT_KNOT];
-        const real t = load(q->t + s), scale = all(HAIRLUT_SCALE);
+        const whole high = iall((int)(axis->ends[1] - axis->ends[0]) - 1);
+        const real t = load(q->t + s), scale = choose(igreater(iload(q->at + s), high), all(-HAIRLUT_SCALE), all(HAIRLUT_SCALE));
         const cells cell = load_cells(axis, q->at + s, mul(scale, sub(all(1.0f), t)), mul(scale, t));
         gather4(axis->knots, q->knot + s, knot);
-        store(q->x + s, sub(mul(scale, load(q->x + s)), cell.x0));
+        store(q->x + s, clamp(sub(mul(scale, load(q->x + s)), cell.x0), all(0.0f), cell.w));
         store(q->width + s, knot[2]);
         store(q->d0 + s, cell.d0);
         store(q->t + s, cell.w);
         store(q->d1 + s, cell.d1);
     }
 }
-#endif
 
 /* hairlut_axis_sample, not moved into the domain, of samples s .. s+LANES-1 that were placed and fetched */
 static inline real draw(const draws *q, size_t s, real *slope)
@@ -248,7 +231,7 @@ static inline void end_search(const hairlut_axis *axis, size_t n, searches *q)
 static inline real inverse(const searches *q, size_t s, real *root_of)
 {
     const real w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), from = load(q->x + s), to = sub(w, from);
-    const real wx = larger(mul(w, from), all(0.0f)), wz = larger(mul(w, to), all(0.0f));
+    const real wx = mul(w, from), wz = mul(w, to);
     const real balance = sub(mul(d0, to), mul(d1, from));
     *root_of = root(add(mul(balance, balance), mul(all(4.0f), mul(wx, wz))));
     const real sum = add(*root_of, magnitude(balance));
@@ -256,7 +239,7 @@ static inline real inverse(const searches *q, size_t s, real *root_of)
     const real a = choose(rising, mul(all(2.0f), wx), sum), b = choose(rising, sum, mul(all(2.0f), wz));
     const real unit = over(all(1.0f), add(a, b)), xi = mul(a, unit), rest = mul(b, unit);
     const real bend = add(mul(w, add(mul(xi, xi), mul(rest, rest))), mul(add(d0, d1), mul(xi, rest)));
-    return mul(load(q->width + s), magnitude(bend));
+    return mul(load(q->width + s), bend);
 }
 
 #endif

@@ -9,9 +9,7 @@
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
- *   HAIRLUT_COUNT(group, above, t, x, n)  may be defined: hairlut_count with wider vectors
  *   HAIRLUT_COUNTS(groups, above, at, t, x, n)  may be defined: lane l has the count of groups and above + at[l], t[l], x[l]
- *   HAIRLUT_CELLS_BY_AVX2  may be defined: then n of a count is 16
  *
  * Every formula repeats the scalar one operation by operation, without fused multiply-add: that makes the results equal bit
  * for bit. The work on a block is done in passes, each short enough that a processor has several vectors of it under way: a

@@ -7,7 +7,7 @@
 
 #include "platform.h"
 
-typedef enum hairlut_cpu { HAIRLUT_CPU_PLAIN, HAIRLUT_CPU_AVX2, HAIRLUT_CPU_AVX512 } hairlut_cpu;
+typedef enum hairlut_cpu { HAIRLUT_CPU_PLAIN, HAIRLUT_CPU_AVX2 } hairlut_cpu;
 
 /* A build for one known processor defines HAIRLUT_CPU as one of these: nothing is asked then. */
 
@@ -52,24 +52,17 @@ static inline int hairlut_has_bits(uint32_t word, uint32_t bits)
     return (word & bits) == bits;
 }
 
-/* AVX2 kernels need AVX2 and BMI2. AVX-512 kernels run from Ice Lake and Zen 4 on: those have VBMI2, which no kernel needs. The
- * AVX-512 processors before them lower their clock for vectors of 512 bits, also for what the engine runs next. */
+/* The kernels need AVX2 and BMI2. */
 static inline hairlut_cpu hairlut_ask_cpu(void)
 {
-    enum { OSXSAVE = 1u << 27, AVX = 1u << 28, POPCNT = 1u << 23 };                                     /* leaf 1, ecx */
-    enum { AVX2 = 1u << 5, BMI2 = 1u << 8, F = 1u << 16, DQ = 1u << 17, BW = 1u << 30, VBMI2 = 1u << 6 }; /* leaf 7 */
-    const uint32_t vl = UINT32_C(1) << 31, saves_ymm = 0x6, saves_zmm = 0xe6;
+    enum { OSXSAVE = 1u << 27, AVX = 1u << 28 }; /* leaf 1, ecx */
+    enum { AVX2 = 1u << 5, BMI2 = 1u << 8 };     /* leaf 7, ebx */
+    const uint32_t saves_ymm = 0x6;
     if (hairlut_read_cpuid(0).a < 7)
         return HAIRLUT_CPU_PLAIN;
-    const hairlut_cpuid one = hairlut_read_cpuid(1), seven = hairlut_read_cpuid(7);
-    if (!hairlut_has_bits(one.c, OSXSAVE | AVX) || !hairlut_has_bits(seven.b, AVX2 | BMI2))
+    if (!hairlut_has_bits(hairlut_read_cpuid(1).c, OSXSAVE | AVX) || !hairlut_has_bits(hairlut_read_cpuid(7).b, AVX2 | BMI2))
         return HAIRLUT_CPU_PLAIN;
-    const uint32_t saved = hairlut_saved_registers();
-    if (!hairlut_has_bits(saved, saves_ymm))
-        return HAIRLUT_CPU_PLAIN;
-    const int wide = hairlut_has_bits(one.c, POPCNT) && hairlut_has_bits(seven.b, F | DQ | BW | vl)
-                     && hairlut_has_bits(seven.c, VBMI2) && hairlut_has_bits(saved, saves_zmm);
-    return wide ? HAIRLUT_CPU_AVX512 : HAIRLUT_CPU_AVX2;
+    return hairlut_has_bits(hairlut_saved_registers(), saves_ymm) ? HAIRLUT_CPU_AVX2 : HAIRLUT_CPU_PLAIN;
 }
 
 /* What hairlut_ask_cpu answered, kept: cpuid takes hundreds of cycles, in a virtual machine thousands. Whichever thread comes first,

@@ -141,7 +141,7 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp)
 {
     hairlut_table tables[2 * HAIRLUT_MAX_LOBES];
     hairlut_lobe_desc lobes[HAIRLUT_MAX_LOBES];
-    char names[HAIRLUT_MAX_LOBES][8];
+    char names[HAIRLUT_MAX_LOBES][16];
     const size_t nodes = (size_t)(s->rows * s->columns * s->lobes), first = (size_t)(s->rows * s->columns);
     for (int k = 0; k < 2 * s->lobes; ++k) {
         const float low = k % 2 ? 0.0f : -half_pi, high = k % 2 ? two_pi : half_pi;
@@ -152,7 +152,7 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp)
     for (int k = 0; k < s->lobes; ++k) {
         const hairlut_lobe_desc lobe = {sizeof lobe, names[k], &tables[2 * k], k % 3 == 1 ? NULL : &tables[2 * k + 1],
                                         k % 2 ? HAIRLUT_AZIMUTH_SUM : HAIRLUT_AZIMUTH_DIFFERENCE};
-        snprintf(names[k], sizeof names[k], "lobe%d", k);
+        snprintf(names[k], sizeof names[k], "lobe%u", (unsigned)k);
         lobes[k] = lobe;
     }
     float *theta_r = make_nodes(s->rows, -1.5f, 1.5f), *offset = make_nodes(s->columns, s->mirrored ? 0.0f : -1.0f, 1.0f);

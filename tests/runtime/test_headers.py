@@ -99,7 +99,7 @@ def test_version_of_the_library_is_the_headers():
 def test_libraries_name_their_major_version():
     readelf = compiler("readelf")
     text = run(readelf, "-d", build() / "libhairlut.so").stdout
-    assert "Library soname: [libhairlut.so.1]" in text
+    assert "Library soname: [libhairlut.so.2]" in text
 
 
 def test_core_depends_on_the_c_library_alone():

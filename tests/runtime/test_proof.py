@@ -130,7 +130,7 @@ def leave_out_kernels(lines: dict[str, dict[int, bool]], names: set[str]) -> Non
 
 
 def test_lines_of_the_runtime_are_covered(directories):
-    """Of every source that this machine runs: a processor without AVX-512 executes no line of its kernels,
+    """Of every source that this machine runs: a processor without AVX2 executes no line of its kernels,
     which are then left out and named. NEON's are not compiled on x86."""
     need("gcov")
     program = exercise("coverage", "-DHAIRLUT_COVERAGE=ON", flags=("--coverage",))

@@ -19,16 +19,22 @@ from .lobes import Array
 
 def angle(x0: Array, x1: Array, d0: Array, d1: Array, h: Array, f: Array) -> Array:
     """x at the fraction f in [0, 1] of a cell."""
-    w, p = x1 - x0, f * (1 - f)
-    s = w / h
-    return x0 + w * (s * f * f + d0 * p) / _denominator(s, d0, d1, f, 1 - f)
+    return read(x0, x1, d0, d1, h, f)[0]
 
 
 def slope(x0: Array, x1: Array, d0: Array, d1: Array, h: Array, f: Array) -> Array:
     """dx/du at the fraction f in [0, 1] of a cell."""
-    s, g = (x1 - x0) / h, 1 - f
-    numerator = d1 * f * f + 2 * s * f * g + d0 * g * g
-    return numerator * (s / _denominator(s, d0, d1, f, g)) ** 2
+    return read(x0, x1, d0, d1, h, f)[1]
+
+
+def read(x0: Array, x1: Array, d0: Array, d1: Array, h: Array, f: Array) -> tuple[Array, Array]:
+    """(x, dx/du) at the fraction f in [0, 1] of a cell."""
+    w, g = x1 - x0, 1 - f
+    s, p = w / h, f * g
+    toward, away = s * (f * f), d0 * g
+    near = s / _denominator(s, d0, d1, f, g)
+    x = x0 + (toward + away * f) * near * h
+    return x, (d1 * (f * f) + 2 * s * p + away * g) * (near * near)
 
 
 def locate(x0: Array, x1: Array, d0: Array, d1: Array, h: Array, x: Array) -> tuple[Array, Array]:

@@ -37,6 +37,10 @@ class Cells:
         """(n, W-1, K) density of the table, per rad, at the fractions f (K,) of every cell."""
         return 1 / self.slope(f)
 
+    def read(self, f: Array) -> tuple[Array, Array]:
+        """(angles, dx/du), each (n, W-1, K), at the fractions f (K,) of every cell."""
+        return cell.read(*self._all(), np.asarray(f))
+
     def angle_at(self, n: Array, i: Array, f: Array) -> Array:
         """Angles at the fractions f of the cells i of the inclinations number n, all broadcasting."""
         return cell.angle(*self._one(n, i), f)
@@ -47,8 +51,7 @@ class Cells:
 
     def read_at(self, n: Array, i: Array, f: Array) -> tuple[Array, Array]:
         """(angles, dx/du), likewise."""
-        ends = self._one(n, i)
-        return cell.angle(*ends, f), cell.slope(*ends, f)
+        return cell.read(*self._one(n, i), f)
 
     def column(self, x: Array) -> Array:
         """(n, K) columns, with their fractions, at which the angles x (n, K) lie; x is clamped to the
@@ -86,8 +89,8 @@ def sample(table: Table, theta_r: Array, u: Array) -> tuple[Array, Array]:
 def sample_tail(table: Table, theta_r: Array, m: Array, upper: Array) -> tuple[Array, Array]:
     """As sample, for u = m, or u = 1 - m where upper; all (n,). Both tails keep the precision of m."""
     i, f = table.warp.place(m, upper, table.width)
-    knots = _knots(table, *_rows(table, theta_r), i)
-    return cell.angle(*knots, f), 1 / cell.slope(*knots, f)
+    angle, slope = cell.read(*_knots(table, *_rows(table, theta_r), i), f)
+    return angle, 1 / slope
 
 
 def locate(table: Table, theta_r: Array, x: Array) -> tuple[Array, Array, Array]:

@@ -30,7 +30,8 @@ BETWEEN = 3
 ON_ROWS = slice(None, None, BETWEEN + 1)  # of the inclinations, those of the table's own rows
 ORDER = 8
 MAX_DEPTH = 48
-CHUNK = 400_000  # points worked on at once
+CHUNK = 50_000  # points worked on at once
+QUANTILES_AT = 64  # inclinations at most, spaced evenly over those that are measured
 INNER = 2.0**-12  # the inner range of u is [INNER, 1 - INNER], the whole one [OUTER, 1 - OUTER]
 OUTER = 2.0**-24
 
@@ -65,7 +66,8 @@ class Errors:
     heavy       probability of a weight above HEAVY
     variation   total variation
     lost        mass never reached
-    quantile    largest |x_table(u) - x_exact(u)|, rad, for u from OUTER to 1 - OUTER; NaN where not asked for
+    quantile    largest |x_table(u) - x_exact(u)|, rad, for u from OUTER to 1 - OUTER; NaN where not
+                measured: at most QUANTILES_AT inclinations are
     inner       the same from INNER to 1 - INNER
     """
 
@@ -96,11 +98,11 @@ class Errors:
 
     @property
     def quantile_error(self) -> float:
-        return float(self.quantile.max())
+        return float(np.fmax.reduce(self.quantile))
 
     @property
     def inner_quantile_error(self) -> float:
-        return float(self.inner.max())
+        return float(np.fmax.reduce(self.inner))
 
     @property
     def heavy_probability(self) -> float:
@@ -146,10 +148,10 @@ def measure(
         for part in (at[n : n + step] for n in range(0, len(at), step))
     ]
     variance, weight, heavy, variation, lost = (np.concatenate(column) for column in zip(*parts, strict=True))
+    quantile, inner = np.full((2, len(at)), np.nan)
     if quantiles:
-        quantile, inner = _quantiles(table, exact, at, read)
-    else:
-        quantile = inner = np.full(len(variance), np.nan)
+        some = slice(None, None, -(-len(at) // QUANTILES_AT))
+        quantile[some], inner[some] = _quantiles(table, exact, at[some], read)
     return Errors(exact.theta_r[at], variance, weight, heavy, variation, lost, quantile, inner)
 
 
@@ -182,10 +184,11 @@ def _densities(read: Cells, domain: tuple[float, float], exact: Exact, row: Arra
     n, i, low, size = _panels(read, exact.knots[row])
     square, absolute, heavy, reached = (np.zeros(len(row)) for _ in range(4))
     at_knots, _ = _weights(read, exact, row, n, i, low + size * ENDS[:, None])
-    weight = np.maximum.reduceat(at_knots.max(axis=0), np.searchsorted(n, np.arange(len(row))))
+    peaks = _Peaks(len(row))
+    peaks.consider(at_knots.max(axis=0), n, i, low, size)
     for depth in range(MAX_DEPTH):
         w, du = _weights(read, exact, row, n, i, low + size * NODES[:, None])
-        weight = np.maximum(weight, _peaks(read, exact, row, (n, i, low, size), w.max(axis=0)))
+        peaks.consider(w.max(axis=0), n, i, low, size)
         du = du * (size * WEIGHTS[:, None])
         squares = du * (w - 1) ** 2
         value = squares.sum(axis=0)
@@ -205,18 +208,30 @@ def _densities(read: Cells, domain: tuple[float, float], exact: Exact, row: Arra
     low_end, high_end = np.float32(domain)
     cut = (read.x[:, 0] > low_end) | (read.x[:, -1] < high_end)
     lost = np.where(cut, np.maximum(1 - reached, 0.0), 0.0)
+    dense, _ = _weights(read, exact, row, *peaks.panels(), peaks.low + peaks.size * DENSE[:, None])
+    weight = np.maximum(peaks.w, dense.max(axis=0))
     return square - 2 * lost, weight, heavy, (absolute + lost) / 2, lost
 
 
-def _peaks(read: Cells, exact: Exact, row: Array, panels: tuple[Array, ...], w: Array) -> Array:
-    """The largest weight of each inclination in that of its panels where w (P,), seen at few places, is
-    largest; 0 for an inclination without panels."""
-    order = np.lexsort((w, panels[0]))
-    last = np.append(np.flatnonzero(np.diff(panels[0][order])), len(w) - 1)
-    n, i, low, size = (part[order[last]] for part in panels)
-    weight = np.zeros(len(row))
-    weight[n] = _weights(read, exact, row, n, i, low + size * DENSE[:, None])[0].max(axis=0)
-    return weight
+class _Peaks:
+    """For each of R inclinations the panel with the largest weight w that was seen so far: the cell i, and
+    the fractions low at which the panel begins and size that it spans, each (R,)."""
+
+    def __init__(self, count: int) -> None:
+        self.w, self.low, self.size = np.zeros(count), np.zeros(count), np.ones(count)
+        self.i = np.zeros(count, int)
+
+    def consider(self, w: Array, n: Array, i: Array, low: Array, size: Array) -> None:
+        """Weights w (P,) of panels of the inclinations n (P,)."""
+        order = np.lexsort((w, n))
+        best = order[np.append(np.flatnonzero(np.diff(n[order])), len(w) - 1)]
+        best = best[w[best] > self.w[n[best]]]
+        at = n[best]
+        self.w[at], self.i[at], self.low[at], self.size[at] = w[best], i[best], low[best], size[best]
+
+    def panels(self) -> tuple[Array, Array]:
+        """(inclinations, cells)"""
+        return np.arange(len(self.i)), self.i
 
 
 def _panels(read: Cells, knots: Array) -> tuple[Array, Array, Array, Array]:

@@ -1,40 +1,42 @@
-"""The smallest table that meets a tolerance, found by measuring tables.
+"""The smallest table that meets a tolerance.
 
 The tolerance bounds the relative variance V (measure.py) on every row and between rows. V falls with the
-width until the rows themselves are exact enough, and then only with the height. So widths are tried from the
-narrowest that meets the tolerance on rows alone up to WIDEST times that (a wider table would have to make do
-with half its rows); for each the lowest height is found by bisection, and the fewest texels win.
+width until the rows themselves are exact enough, and then only with the height. sketch.py estimates both; of
+the widths from the narrowest that meets the tolerance on rows alone up to WIDEST times that, the one with the
+fewest texels is taken, at the lowest height that does. The table is then measured, and grows by a step
+where the estimate was too good. Tables of one model take the same number of rows where that costs at most
+SHARING of their texels: a renderer then finds the rows of theta_r once.
 
-The warp's e is measured too: a small e serves the tails and starves the end cells of floating-point steps.
-Only tables whose narrowest cell spans MIN_STEPS steps of a float are considered, and among the powers of two
-that meet the tolerance at the size found the largest is taken: its end cells are the widest.
+The warp's e is the power of two of the least V on rows. Only tables whose narrowest cell spans MIN_STEPS
+steps of a float are considered.
 
 For a table of given size, V is judged for every e, as it rises and falls with e where a lobe has two peaks: a
 cell that spans the gap between them costs more or less as knots meet its ends. Of the e that are within SLACK
 of the least V the one whose largest weight f/q is least is taken, as a large weight is a firefly.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache, partial
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .errors import HairlutError
 from .exact import Exact, exact_at
-from .invert import ALL
-from .lobes import Lobe
-from .measure import BETWEEN, ON_ROWS, Errors, estimate, inclinations, measure, narrowest_cell
-from .table import Table, check_size, row_angles, tabulate
+from .lobes import Array, Lobe
+from .measure import BETWEEN, ON_ROWS, Errors, estimate, inclinations, measure
+from .sketch import EXPONENTS, MIN_STEPS, Sketch, usable
+from .table import Table, check_size, tabulate
 from .warp import Warp
 
-DEFAULT_TOLERANCE = 1e-4
+DEFAULT_TOLERANCE = 1e-5
 DEFAULT_LIMIT = 256
-MIN_STEPS = 2.0
-EXPONENTS = range(-34, 1)  # of e
-FIRST_EXPONENT = -16
-PROBE_HEIGHT = 33  # rows on which a width alone is judged
+FIRST_WIDTH = 24
+ORDER = 4.5  # V falls about as this power of the width on rows, and as
+BLEND_ORDER = 4.0  # this one of the height between them
 WIDEST = 2
+SHARING = 1.25
 SEARCHED_BETWEEN = 1  # midway between rows is the worst place
 FEW = 7  # every so many inclinations are measured first; odd, so that rows and places between them take turns
 SLACK = 1.1  # an e is as good as the best if its variance is within this factor
@@ -51,6 +53,30 @@ class Choice:
     table: Table
     errors: Errors
     reason: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The size of a table that an estimate found. places: theta_r where the blend of rows costs most."""
+
+    sketch: Sketch
+    width: int
+    height: int
+    exponent: int
+    places: Array
+
+    @property
+    def texels(self) -> int:
+        return self.width * self.height
+
+    @property
+    def variance(self) -> float:
+        return self.sketch.between(self.width, self.exponent, self.height, self.places)
+
+    def resized(self, width: int, height: int) -> Plan:
+        return replace(
+            self, width=width, height=height, exponent=self.sketch.best_exponent(width, self.exponent)
+        )
 
 
 def ladder(limit: int) -> list[int]:
@@ -74,27 +100,131 @@ def heights(lobe: Lobe, limit: int) -> list[int]:
 def smallest_table(lobe: Lobe, tolerance: float, limit: int = DEFAULT_LIMIT) -> Choice:
     """The table of fewest texels with V <= tolerance and sides of the ladder up to limit, or
     ToleranceError."""
+    return smallest_tables([lobe], tolerance, limit)[0]
+
+
+def smallest_tables(lobes: Sequence[Lobe], tolerance: float, limit: int = DEFAULT_LIMIT) -> list[Choice]:
+    """The same for the lobes of a model, with equal heights where they cost little."""
     if not tolerance > 0:
         raise HairlutError(
             f"tolerance {tolerance!r}: expected a relative variance above 0, such as {DEFAULT_TOLERANCE:g}"
         )
-    trials = _Trials(lobe)
-    width, height, exponent = _smallest_size(trials, tolerance, limit)
-    while (variance := trials.variance(width, height, exponent, BETWEEN)) > tolerance:
-        taller = [side for side in heights(lobe, limit) if side > height]
-        if not taller:
-            raise _unmet(lobe, tolerance, limit, variance, width, height)
-        height = taller[0]
-    exponent = trials.largest_exponent(width, height, BETWEEN, exponent, tolerance)
-    reason = f"smallest with V <= {tolerance:g}, and largest e that keeps it"
-    return trials.choice(width, height, exponent, reason)
+    plans = [_plan(lobe, tolerance, limit) for lobe in lobes]
+    return [_measured(plan, tolerance, limit) for plan in _with_equal_heights(plans, tolerance)]
+
+
+def _plan(lobe: Lobe, tolerance: float, limit: int) -> Plan:
+    """The smallest size by the estimates."""
+    sketch, sides = Sketch(lobe), ladder(limit)
+    narrowest, exponent = _narrowest(sketch, tolerance, sides)
+    widths = [side for side in sides if narrowest <= side <= WIDEST * narrowest]
+    widest = widths[-1]
+    cost, places = sketch.blend(widest, sketch.best_exponent(widest, exponent))
+    on_rows = sketch.on_rows(narrowest, exponent)
+
+    def height(width: int) -> float:
+        """At which the blend takes what the width leaves of the tolerance."""
+        rest = tolerance - min(on_rows * (narrowest / width) ** ORDER, 0.95 * tolerance)
+        return 1 + (sketch.height - 1) * max(cost / rest, 0.0) ** (1 / BLEND_ORDER)
+
+    width = min(widths, key=lambda side: side * max(height(side), sides[0]))
+    plan = Plan(sketch, width, 0, sketch.best_exponent(width, exponent), places)
+    plan = _lowest(plan, tolerance, heights(lobe, limit), height(width))
+    while (narrower := _narrower(plan, tolerance, sides)) is not None:
+        plan = _lowest(narrower, tolerance, heights(lobe, limit), narrower.height)
+    return plan
+
+
+def _narrowest(sketch: Sketch, tolerance: float, sides: list[int]) -> tuple[int, int]:
+    """(width, exponent of e) of the narrowest table that meets the tolerance on rows alone."""
+    exponent = sketch.best_exponent(min(FIRST_WIDTH, sides[-1]))
+
+    def variance(width: int) -> float:
+        return sketch.on_rows(width, sketch.best_exponent(width, exponent))
+
+    first = variance(min(FIRST_WIDTH, sides[-1]))
+    guess = FIRST_WIDTH * (first / tolerance) ** (1 / ORDER) if np.isfinite(first) else sides[-1]
+    n = _first_within(variance, tolerance, sides, guess)
+    if n is None:
+        raise _unmet(sketch.lobe, tolerance, sides[-1], variance(sides[-1]), sides[-1], sketch.height)
+    return sides[n], sketch.best_exponent(sides[n], exponent)
+
+
+def _lowest(plan: Plan, tolerance: float, sides: list[int], guess: float) -> Plan:
+    """The plan at the lowest of these heights that meets the tolerance."""
+    n = _first_within(lambda height: replace(plan, height=height).variance, tolerance, sides, guess)
+    if n is None:
+        last = replace(plan, height=sides[-1])
+        lobe = plan.sketch.lobe
+        raise _unmet(lobe, tolerance, sides[-1], last.variance, last.width, last.height)
+    return replace(plan, height=sides[n])
+
+
+def _narrower(plan: Plan, tolerance: float, sides: list[int]) -> Plan | None:
+    """The plan with the next narrower width, if that meets the tolerance."""
+    below = [side for side in sides if side < plan.width]
+    if not below:
+        return None
+    narrower = plan.resized(below[-1], plan.height)
+    return narrower if narrower.variance <= tolerance else None
+
+
+def _first_within(
+    variance: Callable[[int], float], tolerance: float, sides: list[int], guess: float
+) -> int | None:
+    """The number of the first of these ascending sides whose variance is within the tolerance, going up or
+    down from a guess in doubling steps and then by bisection; None if that of the last is not."""
+    start = min(int(np.searchsorted(sides, guess)), len(sides) - 1)
+    step, low, high = 1, -1, len(sides)  # beyond low: not within; high: within
+    n = start
+    while high - low > 1:
+        if variance(sides[n]) <= tolerance:
+            high = n
+            n = max(high - step, low + 1) if low < 0 else (low + high) // 2
+        else:
+            low = n
+            n = min(low + step, high - 1) if high == len(sides) else (low + high) // 2
+        step *= 2
+    return high if high < len(sides) else None
+
+
+def _with_equal_heights(plans: list[Plan], tolerance: float) -> list[Plan]:
+    """The plans at the height of the tallest, if all lobes can have it and it costs little."""
+    tallest = max(plan.height for plan in plans)
+    if any(plan.sketch.lobe.own_height for plan in plans):
+        return plans
+    equal = [
+        plan if plan.height == tallest else _narrowest_of(replace(plan, height=tallest), tolerance)
+        for plan in plans
+    ]
+    before, after = (sum(plan.texels for plan in each) for each in (plans, equal))
+    return equal if after <= SHARING * before else plans
+
+
+def _narrowest_of(plan: Plan, tolerance: float) -> Plan:
+    while (narrower := _narrower(plan, tolerance, ladder(plan.width))) is not None:
+        plan = narrower
+    return plan
+
+
+def _measured(plan: Plan, tolerance: float, limit: int) -> Choice:
+    """The plan's table, or the next taller one that meets the tolerance when it is measured."""
+    lobe = plan.sketch.lobe
+    warp = Warp("octaves", 2.0**plan.exponent)
+    for height in [side for side in heights(lobe, limit) if side >= plan.height]:
+        exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, BETWEEN))
+        table = tabulate(lobe, exact, plan.width, warp, ON_ROWS)
+        errors = measure(table, lobe, exact=exact)
+        if errors.relative_variance <= tolerance:
+            return Choice(table, errors, f"smallest with V <= {tolerance:g}")
+    raise _unmet(lobe, tolerance, limit, errors.relative_variance, plan.width, height)
 
 
 def table_of_size(lobe: Lobe, width: int, height: int) -> Choice:
     """The table of a given size; HairlutError where some cell is too narrow for float32 with every e."""
     check_size(width, height)
     exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, BETWEEN))
-    tables = {e: _usable(lobe, exact, width, e, ON_ROWS) for e in EXPONENTS}
+    tables = {e: usable(lobe, exact, width, e, ON_ROWS) for e in EXPONENTS}
     tables = {e: table for e, table in tables.items() if table}
     if not tables:
         raise HairlutError(
@@ -105,16 +235,6 @@ def table_of_size(lobe: Lobe, width: int, height: int) -> Choice:
     return Choice(
         table, measure(table, lobe, exact=exact), "size as asked, lightest e within 10% of the least V"
     )
-
-
-def _usable(lobe: Lobe, exact: Exact, width: int, exponent: int, rows: slice = ALL) -> Table | None:
-    """The table whose rows are these of the exact lobe's; None if a cell is flat or too narrow for
-    float32."""
-    try:
-        table = tabulate(lobe, exact, width, Warp("octaves", 2.0**exponent), rows)
-    except HairlutError:  # flat cells
-        return None
-    return table if narrowest_cell(table.texels) >= MIN_STEPS else None
 
 
 def _lightest(tables: dict[int, Table], lobe: Lobe, exact: Exact) -> int:
@@ -136,108 +256,6 @@ def _lightest(tables: dict[int, Table], lobe: Lobe, exact: Exact) -> int:
         least = min(least, found[e][0])
     good = [e for e, (variance, _) in found.items() if variance <= SLACK * least]
     return min(good, key=lambda e: found[e][1])
-
-
-class _Trials:
-    """Tables of one lobe, on integrals that are worked out once for each height."""
-
-    def __init__(self, lobe: Lobe):
-        self.lobe = lobe
-        self.rows = cache(self._rows)
-        self.exact = cache(self._exact)
-        self.variance = cache(self._variance)
-
-    def _rows(self, height: int) -> Exact:
-        return exact_at(self.lobe, row_angles(self.lobe.theta_r_range, height))
-
-    def _exact(self, height: int, between: int) -> Exact:
-        return exact_at(self.lobe, inclinations(self.lobe.theta_r_range, height, between))
-
-    def table(self, width: int, height: int, exponent: int) -> Table | None:
-        return _usable(self.lobe, self.rows(height), width, exponent)
-
-    def _variance(self, width: int, height: int, exponent: int, between: int) -> float:
-        """V at the worst inclination; infinite where a cell is flat or too narrow for float32."""
-        table = self.table(width, height, exponent)
-        if not table:
-            return np.inf
-        return measure(table, self.lobe, between, False, self.exact(height, between)).relative_variance
-
-    def best_exponent(self, width: int, height: int, between: int, start: int) -> int:
-        """The exponent of e with the least variance, walking downhill from start."""
-        here = start
-        while True:
-            near = [e for e in (here, here + 1, here - 1) if e in EXPONENTS]
-            best = min(near, key=lambda e: (self.variance(width, height, e, between), -e))
-            if best == here:
-                return here
-            here = best
-
-    def largest_exponent(self, width: int, height: int, between: int, start: int, bound: float) -> int:
-        """The largest exponent of e above start up to which V stays within bound."""
-        while start + 1 in EXPONENTS and self.variance(width, height, start + 1, between) <= bound:
-            start += 1
-        return start
-
-    def choice(self, width: int, height: int, exponent: int, reason: str) -> Choice:
-        table = self.table(width, height, exponent)
-        return Choice(table, measure(table, self.lobe, exact=self.exact(height, BETWEEN)), reason)
-
-
-def _smallest_size(trials: _Trials, tolerance: float, limit: int) -> tuple[int, int, int]:
-    """(width, height, exponent) of the fewest texels, judged on rows and midway between them."""
-    widths = _widths(trials, tolerance, limit)
-    best, closest = None, (np.inf, limit, limit)
-    height = heights(trials.lobe, limit)[0]
-    for width, exponent in reversed(widths):
-        tallest = limit if best is None else (best[0] * best[1] - 1) // width
-        among = [side for side in heights(trials.lobe, limit) if height <= side <= tallest]
-        found = _lowest(partial(_searched, trials, width, exponent), tolerance, among)
-        if found is None:
-            if best is None:
-                closest = min(closest, (_searched(trials, width, exponent, limit), width, limit))
-            continue
-        best, height = (width, found, exponent), found
-    if best is None:
-        raise _unmet(trials.lobe, tolerance, limit, *closest)
-    return best
-
-
-def _searched(trials: _Trials, width: int, exponent: int, height: int) -> float:
-    return trials.variance(width, height, exponent, SEARCHED_BETWEEN)
-
-
-def _widths(trials: _Trials, tolerance: float, limit: int) -> list[tuple[int, int]]:
-    """(width, best exponent) of the widths to try, ascending; ToleranceError if rows alone miss the tolerance
-    at all."""
-    height = min(PROBE_HEIGHT, limit)
-    exponent, widths, closest = FIRST_EXPONENT, [], (np.inf, 0, height)
-    for width in ladder(limit):
-        exponent = trials.best_exponent(width, height, 0, exponent)
-        variance = trials.variance(width, height, exponent, 0)
-        closest = min(closest, (variance, width, height))
-        if variance <= tolerance:
-            widths.append((width, exponent))
-        if widths and width >= WIDEST * widths[0][0]:
-            break
-    if not widths:
-        raise _unmet(trials.lobe, tolerance, limit, *closest)
-    return widths
-
-
-def _lowest(variance: Callable[[int], float], tolerance: float, heights: list[int]) -> int | None:
-    """The lowest of these ascending heights that meets the tolerance; None if the last does not."""
-    low, high, step = 0, 0, 1
-    while high < len(heights) and variance(heights[high]) > tolerance:
-        low, high, step = high + 1, high + step, 2 * step
-    if high >= len(heights):
-        high = len(heights) - 1
-        if high < low or variance(heights[high]) > tolerance:
-            return None
-    while low < high:
-        middle = (low + high) // 2
-        low, high = (low, middle) if variance(heights[middle]) <= tolerance else (middle + 1, high)
-    return heights[high]
 
 
 def _unmet(

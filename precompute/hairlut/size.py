@@ -43,7 +43,12 @@ SLACK = 1.1  # an e is as good as the best if its variance is within this factor
 
 
 class ToleranceError(HairlutError):
-    """A tolerance that no table within the size limit meets. The message says how close the best one came."""
+    """A tolerance that no table of this lobe within the size limit meets. The message says how close the best
+    one came."""
+
+    def __init__(self, lobe: Lobe, message: str) -> None:
+        super().__init__(message)
+        self.lobe = lobe
 
 
 @dataclass(frozen=True)
@@ -208,16 +213,22 @@ def _narrowest_of(plan: Plan, tolerance: float) -> Plan:
 
 
 def _measured(plan: Plan, tolerance: float, limit: int) -> Choice:
-    """The plan's table, or the next taller one that meets the tolerance when it is measured."""
+    """The plan's table, or the next wider or taller one that meets the tolerance when it is measured."""
     lobe = plan.sketch.lobe
-    warp = Warp("octaves", 2.0**plan.exponent)
-    for height in [side for side in heights(lobe, limit) if side >= plan.height]:
-        exact = exact_at(lobe, inclinations(lobe.theta_r_range, height, BETWEEN))
-        table = tabulate(lobe, exact, plan.width, warp, ON_ROWS)
+    while True:
+        exact = exact_at(lobe, inclinations(lobe.theta_r_range, plan.height, BETWEEN))
+        table = tabulate(lobe, exact, plan.width, Warp("octaves", 2.0**plan.exponent), ON_ROWS)
         errors = measure(table, lobe, exact=exact)
         if errors.relative_variance <= tolerance:
             return Choice(table, errors, f"smallest with V <= {tolerance:g}")
-    raise _unmet(lobe, tolerance, limit, errors.relative_variance, plan.width, height)
+        wider = [side for side in ladder(limit) if side > plan.width]
+        taller = [side for side in heights(lobe, limit) if side > plan.height]
+        if errors.variance[ON_ROWS].max() > tolerance and wider:
+            plan = plan.resized(wider[0], plan.height)
+        elif taller:
+            plan = plan.resized(plan.width, taller[0])
+        else:
+            raise _unmet(lobe, tolerance, limit, errors.relative_variance, plan.width, plan.height)
 
 
 def table_of_size(lobe: Lobe, width: int, height: int) -> Choice:
@@ -263,10 +274,11 @@ def _unmet(
 ) -> ToleranceError:
     closest = (
         f"the closest, {width}x{height}, has {variance:.2e}"
-        if width
+        if np.isfinite(variance)
         else "their cells are too narrow for floats"
     )
     return ToleranceError(
+        lobe,
         f"{lobe.model}/{lobe.name}: no table of up to {limit}x{limit} has V <= {tolerance:g}; {closest}: "
-        "raise --tolerance, or the limit with --max-size"
+        "raise --tolerance, or the limit with --max-size",
     )

@@ -11,7 +11,6 @@ nearest row holds.
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from .cubics import Cubics
 from .errors import HairlutError
@@ -36,6 +35,8 @@ class TabulatedDensity:
     """
 
     def __init__(self, edges, theta_r, mass, name: str = "tabulated lobe", floor: float = FLOOR):
+        from scipy.interpolate import PchipInterpolator  # slow to import
+
         edges, theta_r, mass = (np.asarray(a, np.float64) for a in (edges, theta_r, mass))
         _check(edges, theta_r, mass, name)
         self.edges, self.theta_r = edges, theta_r

@@ -22,7 +22,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from .errors import HairlutError
 from .lobes import DIFFERENCE, HALF_PI, space
@@ -157,5 +156,7 @@ def _through(where: str, theta_r: np.ndarray, values: np.ndarray) -> Callable:
         raise HairlutError(
             f"{where}: {values.size} numbers for {theta_r.size} theta_r: expected one each, or one for all"
         )
+    from scipy.interpolate import PchipInterpolator  # slow to import
+
     cubic = PchipInterpolator(theta_r, values)
     return lambda t: cubic(np.clip(t, theta_r[0], theta_r[-1]))

@@ -1,8 +1,11 @@
-"""A file checked again from itself alone: its header names the lobe, the lobe says what every texel must be.
+"""A model's files checked again from themselves alone: the headers name the lobes, the lobes say what every
+texel must be.
 
-Nothing that the bake computed is believed. The lobe is found by the model and table that the header names;
-its formula, domain and range must be the header's. Every texel is compared with the quantile of its row, and
-the errors of the table are measured and compared with those that the header claims.
+Nothing that the bake computed is believed. A lobe is found by the model and table that the header names; its
+formula, domain and range must be the header's. Every texel is compared with the quantile and the slope of its
+row, and the errors of the table are measured and compared with those that the header claims. The files of a
+directory must belong together: mixture.exr names its tables by their digests. A model that was fitted to data
+has no lobes to compare with; its files are checked for being whole and of one bake.
 """
 
 from dataclasses import dataclass, field
@@ -13,21 +16,25 @@ import numpy as np
 from . import exr, manifest, mixturefile
 from .errors import HairlutError
 from .exact import exact_at
-from .lobes import MODELS, NO_FORMULA, TABLES, Array, Lobe, Model
+from .lobes import MODELS, NO_FORMULA, Array, Lobe, Model
 from .measure import ON_ROWS, Errors, inclinations, measure
+from .mixture import constant
 from .modelfile import load
-from .table import Table
+from .table import Table, tabulate
 
 STEPS = 1.0  # of a float by which a texel may miss the quantile
 NOISE = 1e-12  # rad, of the quantile itself
+SLOPE_OFF = 1e-4  # relative: a slope at an end follows from a small difference of two quantiles
+SHARE_OFF = 1e-6
+NOT_COMPARED = "fitted to a BSDF: checked for form and digest, but not against the BSDF"
 CLAIM_SLACK = 1.01
 CLAIM_NOISE = 1e-9
 
 
 @dataclass
 class Report:
-    """What is known about one file. problems: what is wrong, and where; empty if the file is good. note: what
-    could not be checked."""
+    """What was found out about one file. problems: what is wrong, and where; empty if the file is good.
+    note: what could not be checked."""
 
     path: Path
     problems: list[str] = field(default_factory=list)
@@ -57,12 +64,10 @@ def verify(path: Path, model: Model | None = None) -> list[Report]:
     models = (
         MODELS | {found.name: found for found in map(load, beside)} | ({model.name: model} if model else {})
     )
-    reports = [verify_file(file, models) for file in files if file.name != mixturefile.FILE]
-    mixtures = [file for file in files if file.name == mixturefile.FILE]
-    reports += [_mixture(file) for file in mixtures]
+    reports = [verify_file(file, models) for file in files]
     if path.is_dir():
-        for directory in sorted({file.parent for file in files} - {file.parent for file in mixtures}):
-            reports += _incomplete(directory)
+        for directory in sorted({file.parent for file in files}):
+            reports += _incomplete(directory, reports)
     return reports
 
 
@@ -72,61 +77,89 @@ def lobe_of(path: Path, model: Model | None = None) -> Lobe:
     return _lobe(path, exr.read(path)[0], MODELS | ({model.name: model} if model else {}))
 
 
-def _mixture(path: Path) -> Report:
-    """The report on a mixture, with the tables that it names, each of which must be of the same bake."""
-    report = Report(path)
+def _incomplete(directory: Path, reports: list[Report]) -> list[Report]:
+    """What is wrong with the directory as a whole, if each of its files is good by itself."""
+    if not all(report.ok for report in reports if report.path.parent == directory):
+        return []
     try:
-        model = exr.read_model(path.parent)
+        exr.read_model(directory)
     except HairlutError as error:
-        report.problems.append(str(error).removeprefix(f"{path}: "))
-        return report
-    report.size = f"{len(model.lobes)} lobes, {len(model.tables)} tables"
-    return report
-
-
-def _incomplete(directory: Path) -> list[Report]:
-    """A report on each table that a model of format 1 lacks."""
-    missing = [name for name in TABLES if not (directory / f"{name}.exr").is_file()]
-    return [
-        Report(directory / f"{name}.exr", ["the file is missing: bake the model again"]) for name in missing
-    ]
+        path, _, problem = str(error).partition(": ")
+        return [Report(Path(path), [problem])]
+    return []
 
 
 def verify_file(path: Path, models: dict[str, Model]) -> Report:
-    """The report on one file."""
+    """The report on one file, a table or mixture.exr."""
     report = Report(path)
     try:
-        table, report.claimed = exr.read(path)
-        report.size = f"{table.width}x{table.height}"
-        if table.parameters == NO_FORMULA and table.model not in models:
-            report.note = "fitted to a BSDF: checked for form and digest, but not against the BSDF"
-            return report
-        lobe = _lobe(path, table, models)
+        if path.name == mixturefile.FILE:
+            _verify_mixture(path, models, report)
+        else:
+            _verify_table(path, models, report)
     except HairlutError as error:
         report.problems.append(str(error).removeprefix(f"{path}: "))
-        return report
+    return report
+
+
+def _verify_mixture(path: Path, models: dict[str, Model], report: Report) -> None:
+    found = mixturefile.read(path)
+    report.size = f"{len(found.mixture.theta_r)}x{len(found.mixture.offset)}"
+    model = models.get(found.model)
+    if model is None:
+        if any(table.parameters != NO_FORMULA for table in exr.read_model(path.parent).tables):
+            raise HairlutError(_unknown(found.model, models))
+        report.note = NOT_COMPARED
+    elif found.mixture.lobes != model.names:
+        report.problems.append(
+            f"attribute hairlut.lobes is {' '.join(found.mixture.lobes)}, expected {' '.join(model.names)}"
+        )
+    else:
+        expected = constant(model.names, model.shares)
+        off = abs(found.mixture.share - expected.share).max(axis=(1, 2))
+        report.problems += [
+            f"{name}.share is {found.mixture.share[k].ravel()[0]:.6g}, expected {expected.share[k, 0, 0]:.6g}"
+            for k, name in enumerate(model.names)
+            if off[k] > SHARE_OFF
+        ]
+
+
+def _verify_table(path: Path, models: dict[str, Model], report: Report) -> None:
+    table, report.claimed = exr.read(path)
+    report.size = f"{table.width}x{table.height}"
+    if table.model not in models and table.parameters == NO_FORMULA:
+        report.note = NOT_COMPARED
+        return
+    lobe = _lobe(path, table, models)
     exact = exact_at(lobe, inclinations(table.theta_r_range, table.height))
+    again = tabulate(lobe, exact, table.width, table.warp, ON_ROWS)
     report.problems += _texels(table, exact.quantiles(*table.warp.knots(table.width), ON_ROWS))
+    report.problems += _slopes(table, again.slopes)
     errors = measure(table, lobe, exact=exact)
     report.measured = errors.summary()
     report.problems += _claims(errors, report.claimed)
-    return report
+
+
+def _unknown(model: str, models: dict[str, Model]) -> str:
+    return (
+        f"attribute hairlut.model is {model!r}, expected one of {', '.join(models)}: "
+        "name the model's file with --model"
+    )
 
 
 def _lobe(path: Path, table: Table, models: dict[str, Model]) -> Lobe:
     """The lobe that the header names; HairlutError where header, file name or directory contradict it."""
     if table.model not in models:
-        raise HairlutError(
-            f"attribute hairlut.model is {table.model!r}, expected one of {', '.join(models)}: "
-            "name the model's file with --model"
-        )
+        raise HairlutError(_unknown(table.model, models))
     directory = path.resolve().parent.name
     if directory in models and directory != table.model:
         raise HairlutError(
             f"attribute hairlut.model is {table.model!r}, but the directory is {directory!r}: "
             "a table of another model stands under this one's name"
         )
-    lobe = getattr(models[table.model], table.name)
+    lobe = getattr(models[table.model], table.name, None)
+    if lobe is None:
+        raise HairlutError(f"attribute hairlut.table is {table.name!r}, which {table.model} does not have")
     expected = {
         "angle": (table.angle, lobe.angle),
         "azimuth": (table.azimuth, lobe.azimuth),
@@ -147,6 +180,18 @@ def _texels(table: Table, quantiles: Array) -> list[str]:
     off = abs(table.texels - quantiles)
     wrong = off > STEPS * np.spacing(abs(table.texels)) + NOISE
     return [_wrong_row(table, quantiles, off, j, wrong[j]) for j in np.flatnonzero(wrong.any(axis=1))]
+
+
+def _slopes(table: Table, expected: Array) -> list[str]:
+    """One problem if a slope is wrong."""
+    off = abs(table.slopes / expected - 1)
+    if not (off > SLOPE_OFF).any():
+        return []
+    j, i = np.unravel_index(off.argmax(), off.shape)
+    return [
+        f"row {j} (theta_r = {table.theta_r[j]:.6g} rad): {(off > SLOPE_OFF).sum()} slopes are wrong, worst "
+        f"in column {i}: dxdu is {table.slopes[j, i]:.9g}, expected {expected[j, i]:.9g}"
+    ]
 
 
 def _wrong_row(table: Table, quantiles: Array, off: Array, j: int, wrong: Array) -> str:

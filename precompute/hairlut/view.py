@@ -10,7 +10,7 @@ import numpy as np
 from . import __version__
 from .axis import axis_numbers
 from .errors import HairlutError
-from .export import read_model
+from .exr import read_model
 from .files import write_whole
 from .lobes import MODELS, SUM
 from .measure import Errors, measure
@@ -36,7 +36,7 @@ def page(directories: Sequence[Path], sizes: Sequence[int] = SIZES) -> str:
         )
     models = {}
     for directory in directories:
-        shipped = read_model(directory)
+        shipped = read_model(directory).tables
         models[shipped[0].model] = model_data(shipped, sizes)
     programs = {f"{name}.glsl": (VIEWER / f"{name}.glsl").read_text() for name in PROGRAMS}
     programs["hairlut.glsl"] = SHADER.read_text()

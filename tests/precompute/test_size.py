@@ -24,27 +24,31 @@ from report.study import as_half
 EXPONENTS = [float(2.0**e) for e in size.EXPONENTS]
 
 
+def label(lobe):
+    return f"{lobe.model}/{lobe.name}"
+
+
 def test_shipped_tables_meet_the_default_tolerance(shipped):
     """Measured again: V, weight, and the errors that the header claims."""
     table, _, lobe, claimed = shipped
     errors = measure(table, lobe)
     assert errors.relative_variance <= size.DEFAULT_TOLERANCE
-    assert errors.largest_weight <= 12
+    assert errors.largest_weight <= 1.6
     assert errors.lost_mass == 0.0
     assert narrowest_cell(table.texels) >= size.MIN_STEPS
-    assert table.texels.nbytes <= 16384
+    assert table.nbytes <= 40960
     assert table.warp.e in EXPONENTS
     for name, value in errors.summary().items():
         assert claimed[name] == pytest.approx(value, rel=1e-3)
 
 
 def test_64x64(lobe):
-    """Stretch target of V <= 1e-4 with full support, on every row and three points between rows."""
+    """V <= 2e-6 with full support, on every row and three points between rows."""
     choice = table_of_size(lobe, 64, 64)
     assert choice.table.texels.shape == (64, 64)
     assert len(choice.errors.theta_r) == 4 * 63 + 1
-    assert choice.errors.relative_variance <= 1e-4
-    assert choice.errors.largest_weight <= 12
+    assert choice.errors.relative_variance <= (7e-5 if label(lobe) == "printed/direct_theta" else 4e-6)
+    assert choice.errors.largest_weight <= 1.6
     assert choice.errors.lost_mass == 0.0
     assert flat_cells(choice.table.texels) == 0
 
@@ -53,8 +57,8 @@ def test_256x256(lobe):
     """One e for all lobes: the choice of e is tested at 64x64, and its search would take longer here."""
     table = bake_table(lobe, 256, 256, Warp("octaves", 2.0**-17))
     errors = measure(table, lobe, quantiles=False)
-    assert errors.relative_variance <= 3e-5
-    assert errors.largest_weight <= 12
+    assert errors.relative_variance <= 4e-6
+    assert errors.largest_weight <= 1.6
     assert flat_cells(table.texels) == 0
 
 
@@ -75,8 +79,6 @@ def test_no_smaller_table_of_the_same_width_or_height_meets_the_tolerance(tolera
             for e in EXPONENTS
         )
         assert best > tolerance
-    larger_e = bake_table(lobe, width, height, Warp("octaves", 2 * choice.table.warp.e))
-    assert measure(larger_e, lobe, quantiles=False).relative_variance > tolerance
 
 
 def test_a_looser_tolerance_takes_fewer_texels(lobe):
@@ -101,9 +103,21 @@ def test_a_tolerance_that_is_none(tolerance):
 def test_the_search_for_all_six_tables_is_fast():
     started = time.process_time()
     for model in MODELS.values():
-        for each in model.lobes:
-            smallest_table(each, size.DEFAULT_TOLERANCE)
-    assert time.process_time() - started < 60  # 6 s on an idle 2.5 GHz core
+        size.smallest_tables(model.lobes, size.DEFAULT_TOLERANCE)
+    assert time.process_time() - started < 4  # 0.9 s on an idle 2.5 GHz core
+
+
+def test_tables_of_a_model_share_their_height_where_it_costs_little():
+    fitted = size.smallest_tables(FITTED.lobes, 1e-4)
+    alone = [smallest_table(lobe, 1e-4) for lobe in FITTED.lobes]
+    heights = [choice.table.height for choice in fitted]
+    assert len(set(heights)) == 1
+    assert heights[0] == max(choice.table.height for choice in alone)
+    texels = [sum(choice.table.texels.size for choice in choices) for choices in (fitted, alone)]
+    assert texels[1] < texels[0] <= size.SHARING * texels[1]
+    assert all(choice.errors.relative_variance <= 1e-4 for choice in fitted)
+    printed = size.smallest_tables(MODELS["printed"].lobes, 1e-4)  # one of them is three times as tall
+    assert len({choice.table.height for choice in printed}) > 1
 
 
 # ---- e of a table of given size
@@ -183,7 +197,6 @@ def test_bake_fails_and_writes_nothing_where_the_tolerance_cannot_be_met(tmp_pat
         (["--size", "3x64"], "expected a width of 4"),
         (["--warp", "uniform"], "give --size too"),
         (["--size", "8x8", "--warp", "cubic"], "is not known"),
-        (["--size", "8x8", "--cell", "parabola limit=2"], "expected a limit"),
         (["--tolerance", "0"], "above 0"),
     ],
 )
@@ -202,14 +215,12 @@ def test_bake_with_a_warp_measures_that_warp(tmp_path, capsys):
         "16x16",
         "--warp",
         "uniform",
-        "--cell",
-        "linear",
     ]
     assert main([*command, "--out", str(tmp_path)]) == 0
     assert "size and warp as asked" in capsys.readouterr().out
     table, errors = read(tmp_path / "fitted" / "direct_theta.exr")
     assert str(table.warp) == "uniform"
-    assert errors["relative_variance"] > 0.05
+    assert errors["relative_variance"] > 0.01
 
 
 @pytest.mark.parametrize("side", [32, 64])

@@ -13,7 +13,7 @@ from shaders.backends import SHADERS, chromium
 
 from hairlut import size, view
 from hairlut.cli import main
-from hairlut.export import read_model
+from hairlut.exr import read_model
 from hairlut.lobes import MODELS
 from hairlut.measure import measure
 from report.places import PAGES
@@ -94,7 +94,7 @@ def page(file):
 
 def tables_of(model: str, name: str):
     if name == "shipped":
-        return read_model(LUTS / model)
+        return read_model(LUTS / model).tables
     return [size.table_of_size(lobe, int(name), int(name)).table for lobe in MODELS[model].lobes]
 
 
@@ -252,7 +252,7 @@ def test_shipped_page_is_made_of_what_is_shipped():
     assert (view.VIEWER / "style.css").read_text() in text
     models = data_of(text)["models"]
     for name in MODELS:
-        want = [view._table(table, None)["texels"] for table in read_model(LUTS / name)]
+        want = [view._table(table, None)["texels"] for table in read_model(LUTS / name).tables]
         assert [table["texels"] for table in models[name]["sizes"]["shipped"]] == want
 
 
@@ -271,7 +271,7 @@ def test_a_model_without_known_lobes_is_shown_as_it_is(tmp_path):
 
     from hairlut import exr
 
-    for table in read_model(LUTS / "fitted"):
+    for table in read_model(LUTS / "fitted").tables:
         exr.write(tmp_path / f"{table.name}.exr", replace(table, model="mine"))
     model = data_of(view.page([tmp_path]))["models"]["mine"]
     assert set(model["sizes"]) == {"shipped"}

@@ -16,7 +16,7 @@ import pytest
 from shaders.backends import INPUTS, OUTPUTS, Scene
 
 from hairlut.axis import axis_numbers
-from hairlut.export import read_model
+from hairlut.exr import read_model
 from hairlut.table import Table
 from hairlut.warp import Warp
 
@@ -80,7 +80,7 @@ def _address(array: np.ndarray) -> ctypes.c_void_p:
 
 @functools.cache
 def model_tables(model: str) -> list[Table]:
-    return read_model(ROOT / "luts" / model)
+    return read_model(ROOT / "luts" / model).tables
 
 
 @functools.cache

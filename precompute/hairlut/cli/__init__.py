@@ -18,7 +18,8 @@ EPILOG = """examples:
 exit codes: 0 done, 1 a check failed, 2 wrong use"""
 
 
-def build_parser() -> argparse.ArgumentParser:
+def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
+    """The parser of these commands: to import all of them takes longer than to bake a model."""
     parser = argparse.ArgumentParser(
         prog="hairlut",
         description="Bakes the sampling distributions of a hair shader into small lookup textures.",
@@ -27,7 +28,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"hairlut {__version__}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
-    for name in COMMANDS:
+    for name in commands:
         command = importlib.import_module(f".{name}", __name__)
         command.add_parser(subparsers).set_defaults(run=command.run)
     return parser
@@ -35,7 +36,8 @@ def build_parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command line; the exit code."""
-    args = build_parser().parse_args(argv)
+    argv = sys.argv[1:] if argv is None else argv
+    args = build_parser(argv[:1] if argv[:1] and argv[0] in COMMANDS else COMMANDS).parse_args(argv)
     try:
         return args.run(args)
     except HairlutError as error:

@@ -4,8 +4,7 @@ import argparse
 import os
 import re
 import sys
-from dataclasses import replace
-from functools import lru_cache
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +22,7 @@ from . import CHECK_FAILED, OK
 NARROW = 0.01  # of its domain: a lobe whose half lies within less needs a tall and wide table
 
 EXAMPLES = """examples:
-  hairlut bake                                      both models into luts/, as small as V <= 1e-4 allows
+  hairlut bake                                      both models into luts/, as small as V <= 1e-5 allows
   hairlut bake --model fitted --tolerance 1e-3 --out small
   hairlut bake --size 64x64 --out square
   hairlut bake --size 64x64 --warp uniform --out baseline
@@ -113,11 +112,11 @@ def run(args: argparse.Namespace) -> int:
             print(f"{args.out / source.stem}: {batch_bake.UP_TO_DATE}")
             names.remove(name)
     models = {name: modelfile.find(name) for name in names}
-    choices = bake_all([lobe for model in models.values() for lobe in model.lobes], args)
-    if choices is None:
+    chosen = bake_all(list(models.values()), args)
+    if chosen is None:
         return CHECK_FAILED
-    for name, model in models.items():  # only when all of them have come out
-        textures = write(args.out, model, [choice for choice in choices if choice.table.model == model.name])
+    for (name, model), choices in zip(models.items(), chosen, strict=True):  # when all have come out
+        textures = write(args.out, model, choices)
         if name in sources:
             record(args, sources[name], textures)
     return OK
@@ -183,21 +182,23 @@ def passed_on(args: argparse.Namespace) -> list[str]:
     return [*shape, *rest, *warp, *(["--force"] if args.force else [])]
 
 
-def bake_all(lobes: list[Lobe], args: argparse.Namespace) -> list[size.Choice] | None:
-    """The tables of all lobes; None, with the reason on stderr, if one cannot meet the tolerance."""
+def bake_all(models: list[Model], args: argparse.Namespace) -> list[list[size.Choice]] | None:
+    """The tables of each model; None, with the reason on stderr, if one cannot meet the tolerance."""
+    try:
+        return [bake_one(model, args) for model in shown(models, "baking")]
+    except size.ToleranceError as error:
+        print(f"hairlut: {error}{_why(error.lobe)}", file=sys.stderr)
+        return None
+
+
+def shown(items: list, what: str) -> Iterable:
+    """The items, with a bar of progress on a terminal."""
+    if not sys.stderr.isatty():
+        return items
     from rich.console import Console
     from rich.progress import track
 
-    console = Console(stderr=True)
-    shown = track(lobes, "baking", console=console, transient=True, disable=not console.is_terminal)
-    choices = []
-    for lobe in shown:
-        try:
-            choices.append(bake_one(lobe, args))
-        except size.ToleranceError as error:
-            print(f"hairlut: {error}{_why(lobe)}", file=sys.stderr)
-            return None
-    return choices
+    return track(items, what, console=Console(stderr=True), transient=True)
 
 
 def _why(lobe: Lobe) -> str:
@@ -222,23 +223,15 @@ def _why(lobe: Lobe) -> str:
     return ""
 
 
-def bake_one(lobe: Lobe, args: argparse.Namespace) -> size.Choice:
-    """A table of the size and warp asked for, or chosen by measurement where none was."""
-    choice = _baked(lobe, args.size, args.warp, args.tolerance, args.max_size)
-    return replace(choice, table=replace(choice.table, model=lobe.model))
-
-
-@lru_cache(maxsize=modelfile.KEPT)
-def _baked(
-    lobe: Lobe, shape: tuple[int, int] | None, warp: Warp | None, tolerance: float, limit: int
-) -> size.Choice:
-    """The same choice for equal lobes, of whatever model."""
-    if warp:
-        table = bake_table(lobe, *shape, warp)
-        return size.Choice(table, measure(table, lobe), "size and warp as asked")
-    if shape:
-        return size.table_of_size(lobe, *shape)
-    return size.smallest_table(lobe, tolerance, limit)
+def bake_one(model: Model, args: argparse.Namespace) -> list[size.Choice]:
+    """Tables of the size and warp asked for, or chosen by measurement where none was."""
+    if args.warp:
+        tables = [bake_table(lobe, *args.size, args.warp) for lobe in model.lobes]
+        pairs = zip(tables, model.lobes, strict=True)
+        return [size.Choice(table, measure(table, lobe), "size and warp as asked") for table, lobe in pairs]
+    if args.size:
+        return [size.table_of_size(lobe, *args.size) for lobe in model.lobes]
+    return size.smallest_tables(model.lobes, args.tolerance, args.max_size)
 
 
 def write(out: Path, model: Model, choices: list[size.Choice]) -> list[Path]:

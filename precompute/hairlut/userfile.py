@@ -9,14 +9,18 @@ either: sys.exit() is an error like any other.
 from __future__ import annotations
 
 import io
+import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout, suppress
+from contextlib import chdir, contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
+
+import numpy as np
 
 from .errors import HairlutError
 from .nulldevice import null_device
@@ -54,7 +58,7 @@ def guarded(function: Callable, path: Path) -> Callable:
 
     @wraps(function)
     def call(*arguments):
-        with _named(path), redirect_stdout(sys.stderr):
+        with _named(path), _without_streams():
             return function(*arguments)
 
     return call
@@ -62,16 +66,17 @@ def guarded(function: Callable, path: Path) -> Callable:
 
 @contextmanager
 def user_code(path: Path) -> Iterator[None]:
-    """Lets the code of the file at path run within."""
+    """Lets the code of the file at path run within. What it changes of the process is put back: the working
+    directory, the filters of warnings, what NumPy does about an overflow."""
     folder = str(path.resolve().parent)
-    kept = sys.stdin, sys.dont_write_bytecode
+    kept = sys.dont_write_bytecode
     sys.path.insert(0, folder)
-    sys.stdin, sys.dont_write_bytecode = _NoInput(), True
+    sys.dont_write_bytecode = True
     try:
-        with _named(path), null_device(0), redirect_stdout(sys.stderr):
+        with _named(path), null_device(0), _without_streams(), _put_back():
             yield
     finally:
-        sys.stdin, sys.dont_write_bytecode = kept
+        sys.dont_write_bytecode = kept
         with suppress(ValueError):
             sys.path.remove(folder)
 
@@ -105,10 +110,27 @@ def reason(error: BaseException) -> str:
     message = (str(error).splitlines() or [""])[0]
     text = f"{type(error).__name__}: {message}" if message else type(error).__name__
     if isinstance(error, ModuleNotFoundError):
-        return f"{text}: put it beside the file, or install it for {sys.executable}"
+        return f"{text}: import it at the file's top, from beside the file or installed for {sys.executable}"
     if isinstance(error, SyntaxError) and error.lineno:
         return text.replace(f" ({Path(error.filename or '').name}, line {error.lineno})", "")
     return text
+
+
+@contextmanager
+def _without_streams() -> Iterator[None]:
+    """No standard input, and prints on standard error."""
+    kept, sys.stdin = sys.stdin, _NoInput()
+    try:
+        with redirect_stdout(sys.stderr):
+            yield
+    finally:
+        sys.stdin = kept
+
+
+@contextmanager
+def _put_back() -> Iterator[None]:
+    with chdir(os.curdir), warnings.catch_warnings(), np.errstate():
+        yield
 
 
 class _NoInput(io.TextIOBase):

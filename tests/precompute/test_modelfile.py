@@ -2,6 +2,7 @@
 
 import os
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -216,6 +217,13 @@ def test_a_file_in_its_own_encoding_is_read(tmp_path):
     path = tmp_path / "hair.py"
     path.write_bytes(("# -*- coding: latin-1 -*-\n# 5\xb0\n" + GOOD).encode("latin-1"))
     assert modelfile.find(str(path)).name == "hair"
+
+
+def test_what_a_file_changes_of_the_process_is_put_back(tmp_path):
+    more = "import os, warnings\nos.chdir('/')\nnp.seterr(all='raise')\nwarnings.simplefilter('error')\n"
+    before = os.getcwd(), np.geterr(), list(warnings.filters)
+    modelfile.find(str(written(tmp_path, GOOD + more)))
+    assert (os.getcwd(), np.geterr(), list(warnings.filters)) == before
 
 
 def test_standard_input_is_there_again_afterwards(tmp_path):

@@ -127,6 +127,7 @@ def test_draws_are_weighed_by_value_if_there_is_one(tmp_path):
     alike = read(written(tmp_path, text_of(RADIANS[:3], columns)))
     weighed = read(written(tmp_path, text_of(RADIANS, [*columns, weight])))
     assert str(alike) == "400 draws"
+    assert str(weighed) == "400 draws weighed by value"
     np.testing.assert_array_equal(alike.weight, 1.0)
     np.testing.assert_array_equal(weighed.weight, weight)
     np.testing.assert_allclose([weighed.theta_r, weighed.theta_i, weighed.phi], columns, atol=1e-12)

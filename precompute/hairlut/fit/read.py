@@ -68,7 +68,8 @@ class Draws:
     note: str = ""
 
     def __str__(self) -> str:
-        return f"{len(self.weight):,} draws{self.note}"
+        weighed = " weighed by value" if np.ptp(self.weight) > 0 else ""
+        return f"{len(self.weight):,} draws{weighed}{self.note}"
 
 
 def read(path: Path) -> Grid | Draws:

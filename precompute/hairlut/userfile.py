@@ -144,12 +144,18 @@ class _NoInput(io.TextIOBase):
 
 
 def _forget_neighbours(folder: Path, before: set[str]) -> tuple[Path, ...]:
-    """Drops the modules that lie in the folder and were imported since, for another file may have others of
-    the same names; their paths."""
+    """Drops the modules and packages of the folder that were imported since, for another file may have others
+    of the same names; their paths."""
     found = []
     for name in set(sys.modules) - before:
         file = getattr(sys.modules[name], "__file__", None)
-        if file and Path(file).resolve().is_relative_to(folder):
+        if file and _lies_in(folder, name, Path(file).resolve()):
             found.append(Path(file))
             del sys.modules[name]
     return tuple(sorted(found))
+
+
+def _lies_in(folder: Path, name: str, file: Path) -> bool:
+    """Whether the module was imported from the folder, not from an environment somewhere below it."""
+    top = name.partition(".")[0]
+    return file.is_relative_to(folder) and file.relative_to(folder).parts[0].partition(".")[0] == top

@@ -207,6 +207,17 @@ def test_a_file_may_import_its_neighbours_which_belong_to_its_inputs(tmp_path, c
     assert capsys.readouterr().out == ""
 
 
+def test_an_environment_below_the_folder_is_no_neighbour(tmp_path, monkeypatch):
+    """As where a model stands beside .venv/."""
+    (tmp_path / ".venv" / "lib").mkdir(parents=True)
+    written(tmp_path / ".venv" / "lib", "SIGMA = 0.3\n", "widths_installed.py")
+    monkeypatch.syspath_prepend(tmp_path / ".venv" / "lib")
+    path = written(tmp_path, "import widths_installed\n" + GOOD)
+    assert modelfile.inputs(path) == [path]
+    assert "widths_installed" in sys.modules
+    monkeypatch.delitem(sys.modules, "widths_installed")
+
+
 def test_names_of_the_files_own_are_free(tmp_path):
     """A function or an array is no setting, however it is called."""
     more = "def azimuth(phi):\n    return phi\nlobe = 3\nAZIMUTHS = (1, 2)\n_azimuth = 'sum'\n"

@@ -92,7 +92,8 @@ class MemoryTable:
 
 def knots(width: int, warp: int = OCTAVES, warp_e: float = 2.0**-18) -> np.ndarray:
     """u of the columns."""
-    return Warp("octaves" if warp == OCTAVES else "uniform", float(np.float32(warp_e))).u(width)
+    chosen = Warp("octaves", max(float(np.float32(warp_e)), 1e-12)) if warp == OCTAVES else Warp("uniform")
+    return chosen.u(width)
 
 
 def with_slopes(x: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -199,7 +200,7 @@ class Description:
 
     def _lobe(self, lobe: Lobe) -> CLobe:
         theta, phi = (t and ctypes.pointer(self.tables[id(t)]) for t in (lobe.theta, lobe.phi))
-        return CLobe(ctypes.sizeof(CLobe), lobe.name and lobe.name.encode(), theta, phi, lobe.azimuth)
+        return CLobe(ctypes.sizeof(CLobe), None if lobe.name is None else lobe.name.encode(), theta, phi, lobe.azimuth)
 
     def create(self, allocator: "Allocator | None" = None) -> Model:
         """hairlut_model_create; LoadError if it refuses."""

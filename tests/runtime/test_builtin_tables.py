@@ -1,41 +1,63 @@
-"""Tables as C source: runtime/src/builtin_tables.c, committed so that a C build needs no Python, is what
-luts/ exports to, and what is exported is what the loader makes of the textures."""
+"""Compiled-in tables: runtime/src/builtin_tables.c, committed so that a C build needs neither Python nor OpenEXR,
+is what runtime/tools/embed.c makes of luts/, and what it makes is what the loader builds of the textures."""
 
 import ctypes
 import os
+from pathlib import Path
 
 import pytest
 from runtime.by_hand import INCLUDE, SOURCE
-from runtime.c_library import FLAGS, MODELS, ROOT, RUNTIME, Model, load, loops, run, tool
+from runtime.c_library import BUILTIN, FLAGS, ROOT, Model, build, builtin, load, loops, run, tool
+
+pytestmark = pytest.mark.usefixtures("loader")
+LARGEST_LIBRARY = 1_000_000  # bytes
 
 
-def test_exporting_the_tables_again_gives_the_same_bytes(tmp_path):
-    directories = [f"luts/{model}" for model in MODELS]
-    out = tmp_path / "builtin_tables.c"
-    run(tool("hairlut"), "export", *directories, "--to", "c", "--out", out, cwd=ROOT)
-    assert out.read_bytes() == (RUNTIME / "src" / "builtin_tables.c").read_bytes(), (
-        f"out of date: hairlut export {' '.join(directories)} --to c --out runtime/src/builtin_tables.c"
-    )
+@pytest.fixture(scope="module")
+def embed() -> Path:
+    """The tool, built."""
+    run(tool("cmake"), "--build", build(), "--target", "embed")
+    return build() / "embed"
 
 
-def exported(directory) -> Model:
-    """The model of a directory, compiled in: builtin.c with what the directory exports to as its tables."""
+def test_embedding_the_tables_again_gives_the_same_bytes(embed):
+    text = run(embed, *(f"luts/{model}" for model in BUILTIN), cwd=ROOT).stdout
+    assert text == (SOURCE / "builtin_tables.c").read_text(), "out of date: make builtin"
+
+
+@pytest.mark.parametrize("name", BUILTIN)
+def test_compiled_in_models_are_those_that_the_loader_builds(name):
+    assert loops().same_models(builtin(name).pointer, load(ROOT / "luts" / name).pointer)
+
+
+def embedded(embed: Path, directory: Path) -> Model:
+    """The model of a directory, compiled in: builtin.c with what embed makes of the directory."""
     source, library = directory / "tables.c", directory / "tables.so"
-    run(tool("hairlut"), "export", directory, "--to", "c", "--out", source)
+    source.write_text(run(embed, directory).stdout)
     run(os.environ.get("CC", "cc"), *FLAGS, "-fPIC", "-shared", *INCLUDE, SOURCE / "builtin.c", source,
         "-o", library)  # fmt: skip
-    builtin = ctypes.CDLL(str(library)).hairlut_builtin
-    builtin.restype, builtin.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
-    return Model(builtin(directory.name.encode()), "exported", owned=False)
+    find = ctypes.CDLL(str(library)).hairlut_builtin
+    find.restype, find.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
+    return Model(find(directory.name.encode()), "embedded", owned=False)
 
 
-@pytest.mark.usefixtures("loader")
 @pytest.mark.parametrize("width", [5, 73, 74, 300, 600])
-def test_exported_tables_are_those_that_the_loader_builds(width, tmp_path):
+def test_embedded_tables_of_every_layout_are_those_that_the_loader_builds(embed, width, tmp_path):
     """Of widths that are searched in small groups, in large ones, and by halving before (73 is the last small
     one; the blocks of 300 and 600 are 32 and 64 cells)."""
     design = "--size", f"{width}x3", "--warp", "octaves e=0.0009765625"
     run(tool("hairlut"), "bake", "--model", "fitted", *design, "--out", tmp_path)
-    compiled, loaded = exported(tmp_path / "fitted"), load(tmp_path / "fitted")
-    assert loops().same_tables(compiled.pointer, loaded.pointer)
-    assert not loops().same_tables(compiled.pointer, load(ROOT / "luts" / "fitted").pointer)
+    compiled, loaded = embedded(embed, tmp_path / "fitted"), load(tmp_path / "fitted")
+    assert loops().same_models(compiled.pointer, loaded.pointer)
+    assert not loops().same_models(compiled.pointer, load(ROOT / "luts" / "fitted").pointer)
+
+
+def test_wrong_use_of_the_tool_is_an_error(embed, tmp_path):
+    with pytest.raises(AssertionError, match="use: embed DIRECTORY"):
+        run(embed)
+    with pytest.raises(AssertionError, match=r"embed: .*mixture|embed: .*\.exr"):
+        run(embed, tmp_path)
+
+
+def test_the_library_stays_small():
+    assert (build() / "libhairlut.so").stat().st_size < LARGEST_LIBRARY

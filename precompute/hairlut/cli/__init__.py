@@ -3,6 +3,7 @@
 import argparse
 import importlib
 import sys
+import textwrap
 from collections.abc import Sequence
 
 from .. import __version__
@@ -10,19 +11,22 @@ from ..errors import HairlutError
 
 COMMANDS = ("bake", "fit", "inspect", "verify", "export", "view", "plot")
 OK, CHECK_FAILED, WRONG_USE = 0, 1, 2
+WIDTH = 100  # of a description, characters
 
 EPILOG = """examples:
-  hairlut bake                             bake both models into luts/
-  hairlut inspect luts/fitted/direct_phi.exr
+  hairlut fit my_hair.py --out luts        from a BSDF to luts/my_hair/, which the C library loads
+  hairlut bake                             bake the built-in models into luts/
+  hairlut verify luts                      measure every table again
   hairlut export luts/printed luts/fitted --to c --out tables.c
-exit codes: 0 done, 1 a check failed, 2 wrong use"""
+exit codes: 0 done, 1 a check failed (a tolerance not met, a file that verify rejects), 2 wrong use
+hairlut COMMAND --help shows a command's options and examples"""
 
 
 def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
     """The parser of these commands: to import all of them takes longer than to bake a model."""
     parser = argparse.ArgumentParser(
         prog="hairlut",
-        description="Bakes the sampling distributions of a hair shader into small lookup textures.",
+        description="Makes small lookup textures from which a renderer importance-samples hair.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -32,6 +36,17 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
         command = importlib.import_module(f".{name}", __name__)
         command.add_parser(subparsers).set_defaults(run=command.run)
     return parser
+
+
+def add_command(subparsers, name: str, help: str, description: str, epilog: str) -> argparse.ArgumentParser:
+    """The parser of a command. epilog: examples and what follows them, printed as it stands."""
+    return subparsers.add_parser(
+        name,
+        help=help,
+        description=textwrap.fill(description, WIDTH),
+        epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
 
 
 def main(argv: Sequence[str] | None = None) -> int:

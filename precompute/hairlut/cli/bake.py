@@ -17,72 +17,77 @@ from ..measure import measure
 from ..model import assemble
 from ..table import bake_table
 from ..warp import Warp
-from . import CHECK_FAILED, OK
+from . import CHECK_FAILED, OK, add_command
 
 NARROW = 0.01  # of its domain: a lobe whose half lies within less needs a tall and wide table
 
 EXAMPLES = """examples:
-  hairlut bake                                      both models into luts/, as small as V <= 1e-5 allows
+  hairlut bake                                      the built-in models into luts/, with V <= 1e-5
   hairlut bake --model fitted --tolerance 1e-3 --out small
   hairlut bake --size 64x64 --out square
   hairlut bake --size 64x64 --warp uniform --out baseline
-  hairlut bake --model my_hair.py                   lobes of your own (see the module hairlut.modelfile)
+  hairlut bake --model my_hair.py                   your own lobes (see the module hairlut.modelfile)
   hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/, or a family from hairlut fit
-  hairlut bake --model theirs.py --timeout 60       in a process of its own, ended if it takes longer
-  parallel hairlut bake --out baked --model ::: hairs/*.py      the same on a queue's machines"""
+  hairlut bake --model theirs.py --timeout 60       stop it after a minute
+  parallel hairlut bake --out baked --model ::: hairs/*.py      the same, as the jobs of a queue"""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(
+    parser = add_command(
+        subparsers,
         "bake",
-        help="integrate, normalise and invert the lobes; write them as textures",
-        description="Integrates every lobe numerically, inverts its CDF and writes DIR/<model>/<table>.exr, "
-        "with the errors that each table was measured to have.",
+        help="tabulate the inverse CDF of each lobe of a model, and write the textures",
+        description="Integrates each lobe of a model numerically, inverts its CDF and writes a directory "
+        "DIR/<model>/ of textures, which the C library loads. Each header states the measured errors.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "--model",
         action="append",
-        help=f"one of {', '.join(MODELS)}; or a model file ({', '.join(modelfile.SUFFIXES)}), or a directory "
-        "of them, baked where textures are not up to date; may be repeated (default: the built-in ones)",
+        help=f"one of {', '.join(MODELS)}, a model file ({', '.join(modelfile.SUFFIXES)}), or a directory of "
+        "model files; files whose textures are up to date are skipped; may be repeated (default: the "
+        "built-in models)",
     )
     parser.add_argument(
-        "--jobs", type=int, default=os.cpu_count(), metavar="N", help="models of a directory baked at a time"
+        "--jobs",
+        type=int,
+        default=os.cpu_count(),
+        metavar="N",
+        help="how many models of a directory to bake at the same time",
     )
     parser.add_argument(
         "--timeout",
         type=float,
         metavar="SECONDS",
-        help="seconds after which a model file fails, its process ended (default: "
-        f"{batch_bake.TIMEOUT:g} in a directory; a file alone has no limit)",
+        help="time limit for each model file, which runs in a process of its own (default: "
+        f"{batch_bake.TIMEOUT:g} for the files of a directory, none for a single file)",
     )
-    parser.add_argument("--force", action="store_true", help="bake model files that are up to date again")
+    parser.add_argument("--force", action="store_true", help="bake again what is up to date")
     how_large = parser.add_mutually_exclusive_group()
     how_large.add_argument(
         "--tolerance",
         type=float,
         default=size.DEFAULT_TOLERANCE,
         metavar="V",
-        help="relative variance that a table may add to an estimate: the smallest width and height that meet "
-        "it are found for each table (default: %(default)g)",
+        help="relative variance that a table may add to an estimate; each table gets the smallest size that "
+        "meets it (default: %(default)g)",
     )
     how_large.add_argument(
-        "--size", type=parse_size, metavar="WxH", help="columns (u) and rows (theta_r) of every texture"
+        "--size", type=parse_size, metavar="WxH", help="columns (u) and rows (theta_r) of every table"
     )
     parser.add_argument(
         "--max-size",
         type=int,
         default=size.DEFAULT_LIMIT,
         metavar="N",
-        help="longest side that --tolerance may choose (default: %(default)s)",
+        help="largest width and height that --tolerance may choose (default: %(default)s)",
     )
     parser.add_argument("--out", type=Path, default=Path("luts"), metavar="DIR", help="default: luts")
     parser.add_argument(
         "--warp",
         metavar="WARP",
-        help="with --size, where the columns lie on the u axis: 'octaves e=NUMBER' or 'uniform' (default: "
-        "octaves, e as measured to be best)",
+        help="with --size, the spacing of the columns in u: 'octaves e=NUMBER' or 'uniform' (default: "
+        "octaves, with the e that measures best)",
     )
     return parser
 

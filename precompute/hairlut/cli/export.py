@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..export import TARGETS, export
-from . import OK
+from . import OK, add_command
 
 EXAMPLES = """examples:
   hairlut export luts/printed luts/fitted --to c --out build/builtin_tables.c
@@ -13,18 +13,18 @@ EXAMPLES = """examples:
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(
+    parser = add_command(
+        subparsers,
         "export",
-        help="write tables in another form",
-        description="Writes baked tables in a form that needs no OpenEXR. c: a C source of the models. "
-        "raw: little-endian 32-bit floats with a JSON sidecar. npz: numpy arrays.",
+        help="write tables for engines that do not read OpenEXR",
+        description="Writes baked tables in a form that does not need OpenEXR. c: one C source with the "
+        "models. raw: little-endian 32-bit floats, and a JSON file beside each table. npz: NumPy arrays.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "path", type=Path, nargs="+", help="directory of a model; with raw and npz also a file"
+        "path", type=Path, nargs="+", help="directory of a model, or, for raw and npz, one table"
     )
-    parser.add_argument("--to", required=True, choices=sorted(TARGETS), help="form of the output")
+    parser.add_argument("--to", required=True, choices=sorted(TARGETS), help="output format")
     parser.add_argument(
         "--out", type=Path, required=True, metavar="OUT", help="file (c) or folder (raw, npz) to write"
     )

@@ -14,7 +14,7 @@ from ..fit.distribution import CELLS, ROWS
 from ..fit.family import LOBES as FAMILY_LOBES
 from ..fit.family import SHAPES
 from ..fit.read import Draws, Grid, read
-from . import OK
+from . import OK, add_command
 
 Report = Callable[[str, float], None]
 
@@ -43,13 +43,14 @@ their weights and turns, in a directory (see the module hairlut.fit.familyfiles)
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(
+    parser = add_command(
+        subparsers,
         "fit",
-        help="fit a model to samples or a grid of a scattering distribution",
-        description="Fits (a) Gaussian lobes with smooth mean and width and (b) the data's own masses, "
-        "writes both as model files, plots them against the data, and says which of them the scene needs.",
+        help="fit a sampler to a hair's BSDF, or to measured scattering",
+        description="Fits lobes to the BSDF that a Python file defines, bakes them, measures the result, and "
+        "writes a directory that the C library loads. From a grid or draws (CSV, npz) it writes model files "
+        "for hairlut bake: Gaussians, and the masses of the data's own cells.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("data", type=Path, help="a Python file that defines bsdf, or a CSV or npz file")
     parser.add_argument("--out", type=Path, metavar="DIR", help="default: luts, or fits for CSV and npz")

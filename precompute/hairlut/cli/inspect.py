@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import exr, mixturefile
 from ..table import Table
-from . import OK
+from . import OK, add_command
 
 EXAMPLES = """examples:
   hairlut inspect luts/fitted/direct_theta.exr
@@ -17,16 +17,16 @@ EXAMPLES = """examples:
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(
+    parser = add_command(
+        subparsers,
         "inspect",
-        help="print a texture's header, size, errors and rows",
+        help="print what a texture's header says",
         description="Prints a texture's header and measured errors: of a table, for each row the mass of the "
         "lobe inside its domain and the width of the narrowest cell; of mixture.exr, each lobe's tables and "
         "the range of its shares and turns.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", type=Path, nargs="+", help="a .exr file of a model")
+    parser.add_argument("file", type=Path, nargs="+", help="a table or mixture.exr")
     parser.add_argument("--json", action="store_true", help="print JSON, one array of files")
     return parser
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from .. import exr, mixturefile
 from ..errors import HairlutError
 from ..lobes import NO_FORMULA
-from . import OK
+from . import OK, add_command
 
 EXAMPLES = """examples:
   hairlut plot luts/fitted/direct_theta.exr
@@ -14,16 +14,18 @@ EXAMPLES = """examples:
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(
+    parser = add_command(
+        subparsers,
         "plot",
-        help="draw a texture, the lobe that it samples, and its errors",
-        description="Writes DIR/<model>_<table>.png for a file, or for every .exr file below a directory.",
+        help="plot a table, the lobe that it samples, and its errors",
+        description="Writes DIR/<model>_<table>.png for a table, or for every table below a directory.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("path", type=Path, nargs="+", help="a file, or a directory with .exr files below it")
-    parser.add_argument("--model", metavar="FILE", help="the model file from which the tables were baked")
-    parser.add_argument("--out", type=Path, default=Path("."), metavar="DIR", help="default: here")
+    parser.add_argument("path", type=Path, nargs="+", help="a table, or a directory of models")
+    parser.add_argument("--model", metavar="FILE", help="the model file that the tables were baked from")
+    parser.add_argument(
+        "--out", type=Path, default=Path("."), metavar="DIR", help="default: the working directory"
+    )
     return parser
 
 

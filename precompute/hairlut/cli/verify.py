@@ -6,24 +6,25 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ..verify import Report, verify
-from . import CHECK_FAILED, OK
+from . import CHECK_FAILED, OK, add_command
 
 EXAMPLES = """examples:
   hairlut verify luts
   hairlut verify luts/fitted/direct_phi.exr --json
-exit code: 0 if every file is good, 1 if one falls short"""
+exit code: 0 if every file is good, 1 if one is not"""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(
+    parser = add_command(
+        subparsers,
         "verify",
-        help="measure every table again from the file alone",
-        description="Compares every texel with its lobe's quantile, and the errors with the header's.",
+        help="measure every table again from its file alone",
+        description="Computes each lobe again, compares every texel with its quantile, measures the table's "
+        "errors, and compares them with those in its header. The files of a model must belong together.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("path", type=Path, nargs="+", help="a file, or a directory with .exr files below it")
-    parser.add_argument("--model", metavar="FILE", help="the model file from which the tables were baked")
+    parser.add_argument("--model", metavar="FILE", help="the model file that the tables were baked from")
     parser.add_argument("--json", action="store_true", help="print JSON, one array of files")
     return parser
 

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from . import OK
+from . import OK, add_command
 
 EXAMPLES = """examples:
   hairlut view --open                      write explorer.html and show it in a browser
@@ -11,13 +11,13 @@ EXAMPLES = """examples:
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(
+    parser = add_command(
+        subparsers,
         "view",
-        help="write the lobe explorer, one HTML page",
+        help="write an interactive HTML page of a model's lobes",
         description="Writes one self-contained HTML page that draws the lobes of baked models with WebGL2 "
         "and the shipped shader: samples, densities, textures and errors, for every theta_r.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "directory", type=Path, nargs="*", help="directories of models (default: luts/fitted luts/printed)"

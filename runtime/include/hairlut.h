@@ -29,6 +29,10 @@
  *   - theta_i outside [-pi/2, pi/2] has density 0.
  *   - no allocation, no global state, no errno. Arrays belong to the caller and are not kept.
  *
+ * Compilers. These rules hold in a program of any flags, -ffast-math among them: the library's own sources are compiled without
+ * (CMake sees to it; compiled by hand with it they are refused). NaN in a program that is compiled with -ffast-math is its own
+ * affair. Float arithmetic must be done in float: on 32-bit x86 with SSE2.
+ *
  * Threads and ownership, for every function of this header: the library has no state, so any function may run in any
  * number of threads at once, also on the same `const hairlut_model`; only hairlut_free needs the model for itself.
  * Strings that are returned, and compiled-in models, are static: never freed. What hairlut_model_create and hairlut_load

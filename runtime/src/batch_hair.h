@@ -126,7 +126,7 @@ static inline void pdf_hair_block(const hairlut_model *model, size_t n, const ha
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), theta_i = load(in->theta_i + s);
         const real phi_i = load(in->phi_i + s), offset = in->offset ? load(in->offset + s) : all(0.0f);
-        const mask wanted = both(both(known(theta_r, phi_r, theta_i, phi_i), finite(phi_i)), numbers(offset, offset));
+        const mask wanted = both(both(known(theta_r, phi_r, theta_i, phi_i), is_finite(phi_i)), numbers(offset, offset));
         mix_at(model, in->given, theta_r, offset, wanted, all(0.0f), &m, s);
         store(m.chosen + s, all(-1.0f)); /* none */
         store(d.theta_r + s, theta_r);

@@ -79,7 +79,7 @@ static inline real relative_azimuth(int azimuth, real r, real i)
 }
 
 /* Finite, where an azimuth is asked for. */
-static inline mask finite(real x)
+static inline mask is_finite(real x)
 {
     return at_least(all(FLT_MAX), magnitude(x));
 }
@@ -117,7 +117,7 @@ static inline void pdf_lobe_block(const hairlut_model *model, int lobe, size_t n
         return;
     for (size_t s = 0; s < n; s += LANES) {
         const real phi_r = load(in[1] + s), phi_i = load(in[3] + s);
-        const mask is_known = both(known(load(in[0] + s), phi_r, load(in[2] + s), phi_i), finite(phi_i));
+        const mask is_known = both(known(load(in[0] + s), phi_r, load(in[2] + s), phi_i), is_finite(phi_i));
         store(valid + s, choose(is_known, all(1.0f), all(0.0f)));
         store(azimuth + s, relative_azimuth(l->azimuth, wrap(phi_r, -hairlut_pi), wrap(phi_i, -hairlut_pi)));
     }

@@ -68,14 +68,15 @@ def test_found_by_cmake_after_install(prefix, tmp_path):
     for form in FORMS:
         folder = tmp_path / form[0]
         folder.mkdir()
-        how = f"find_package(hairlut 1.0 REQUIRED {need})"
+        how = f"find_package(hairlut 2.0 REQUIRED {need})"
         consume(folder, how, form, f"-DCMAKE_PREFIX_PATH={prefix}")
 
 
-def test_a_newer_major_version_is_not_found(prefix, tmp_path):
+@pytest.mark.parametrize("version", ["1.0", "2.99", "3.0"])
+def test_another_major_or_a_newer_version_is_not_found(prefix, tmp_path, version):
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.21)\nproject(consumer LANGUAGES C)\n"
-        "find_package(hairlut 2.0 QUIET)\nif(hairlut_FOUND)\n  message(FATAL_ERROR found)\nendif()\n"
+        f"find_package(hairlut {version} QUIET)\nif(hairlut_FOUND)\n  message(FATAL_ERROR found)\nendif()\n"
     )
     cmake(tmp_path, tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
 

@@ -245,7 +245,11 @@ def no_share() -> np.ndarray:
 
 
 MIXTURES = {
-    "share negative": ({"share": at(-1e-9)}, TABLE, "share of lobe 1 at theta_r node 2, offset node 1 is -9.9"),
+    "share negative": (
+        {"share": at(-1e-9)},
+        TABLE,
+        "share of lobe 1 at theta_r node 2, offset node 1 is -9.9",
+    ),
     "share NaN": ({"share": at(NAN)}, TABLE, "share of lobe 1"),
     "share infinite": ({"share": at(INF, 0)}, TABLE, "share of lobe 0"),
     "no share": ({"share": no_share()}, TABLE, "shares at theta_r node 1, offset node 0 are all 0"),

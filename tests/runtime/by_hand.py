@@ -43,17 +43,24 @@ COMMON = [
 ]
 
 
-def compiled(name: str, program: Path, compiler: str, *flags: str, kernels=HERE_RUN) -> Path:
-    """The program, a C source, with the library's sources, compiled anew with these flags, and kernels with
-    flags of their own besides; in build/tests/name."""
-    folder = BUILD / "tests" / name
+def objects(folder: Path, compiler: str, *flags: str, kernels=HERE_RUN) -> list[Path]:
+    """The library's sources compiled anew with these flags, and kernels with flags of their own besides."""
     folder.mkdir(parents=True, exist_ok=True)
     units = [(file, []) for file in CORE]
     units += [(SOURCE / f"batch_{kernel}.c", extra) for kernel, extra in kernels.items()]
-    units.append((program, []))
-    objects = []
     for source, extra in units:
-        objects.append(folder / f"{source.stem}.o")
-        run(compiler, *COMMON, *flags, *extra, "-c", source, "-o", objects[-1])
-    run(compiler, *flags, *objects, "-o", folder / program.stem, "-lm")
-    return folder / program.stem
+        run(compiler, *COMMON, *flags, *extra, "-c", source, "-o", folder / f"{source.stem}.o")
+    return [folder / f"{source.stem}.o" for source, _ in units]
+
+
+def linked(program: Path, library: list[Path], compiler: str, *flags: str) -> Path:
+    """The program, a C source, with the library's objects, beside them."""
+    out = library[0].parent / program.stem
+    run(compiler, *COMMON, *flags, program, *library, "-o", out, "-lm")
+    return out
+
+
+def compiled(name: str, program: Path, compiler: str, *flags: str, kernels=HERE_RUN) -> Path:
+    """The program, a C source, with the library's sources, all with these flags; in build/tests/name."""
+    library = objects(BUILD / "tests" / name, compiler, *flags, kernels=kernels)
+    return linked(program, library, compiler, *flags)

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from runtime.by_hand import COMMON, NEON, X86
+from runtime.by_hand import NEON, X86
 from runtime.c_library import BUILD, HERE, run, tool
 from runtime.test_batch import checked
 
@@ -65,13 +65,10 @@ def compiler(target: Target) -> Path:
 @pytest.fixture(scope="module")
 def programs(target) -> dict[str, Path]:
     """batch_check and the consumer in C99, for the target."""
-    cc = str(compiler(target))
-    flags = ["-O2", "-DHAIRLUT_STATIC"]
-    check = by_hand.compiled(f"zig/{target.name}", HERE / "batch_check.c", cc, *flags, kernels=target.kernels)
-    library = [file for file in check.parent.glob("*.o") if file.stem != check.stem]
-    consumer = check.parent / "c99"
-    run(cc, *COMMON, *flags, HERE / "consumers" / "c99.c", *library, "-o", consumer, "-lm")
-    return {"batch_check": check, "c99": consumer}
+    cc, flags = str(compiler(target)), ["-O2", "-DHAIRLUT_STATIC"]
+    library = by_hand.objects(FOLDER / target.name, cc, *flags, kernels=target.kernels)
+    sources = {"batch_check": HERE / "batch_check.c", "c99": HERE / "consumers" / "c99.c"}
+    return {name: by_hand.linked(source, library, cc, *flags) for name, source in sources.items()}
 
 
 def test_library_and_consumer_are_built(target, programs):

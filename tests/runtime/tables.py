@@ -200,9 +200,8 @@ class Description:
 
     def _lobe(self, lobe: Lobe) -> CLobe:
         theta, phi = (t and ctypes.pointer(self.tables[id(t)]) for t in (lobe.theta, lobe.phi))
-        return CLobe(
-            ctypes.sizeof(CLobe), None if lobe.name is None else lobe.name.encode(), theta, phi, lobe.azimuth
-        )
+        name = None if lobe.name is None else lobe.name.encode()
+        return CLobe(ctypes.sizeof(CLobe), name, theta, phi, lobe.azimuth)
 
     def create(self, allocator: "Allocator | None" = None) -> Model:
         """hairlut_model_create; LoadError if it refuses."""

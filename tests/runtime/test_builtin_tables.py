@@ -1,5 +1,5 @@
-"""Compiled-in tables: runtime/src/builtin_tables.c, committed so that a C build needs neither Python nor OpenEXR,
-is what runtime/tools/embed.c makes of luts/, and what it makes is what the loader builds of the textures."""
+"""Compiled-in tables: runtime/src/builtin_tables.c, committed so that a C build needs neither Python nor
+OpenEXR, is what runtime/tools/embed.c makes of luts/, and that is what the loader builds of the textures."""
 
 import ctypes
 import os

@@ -248,7 +248,7 @@ MIXTURES = {
     "share negative": (
         {"share": at(-1e-9)},
         TABLE,
-        "share of lobe 1 at theta_r node 2, offset node 1 is -9.9",
+        "lobe 1 at theta_r node 2, offset node 1 is -9.9",
     ),
     "share NaN": ({"share": at(NAN)}, TABLE, "share of lobe 1"),
     "share infinite": ({"share": at(INF, 0)}, TABLE, "share of lobe 0"),

@@ -1,6 +1,7 @@
 # hairlut: `make` sets up, bakes, builds and draws samples; `make test` runs everything that must hold.
 PYTHON ?= python3
 PREFIX ?= /usr/local
+SECONDS_EACH ?= 15
 VENV := .venv
 BIN := $(VENV)/bin
 HAIRLUT := $(BIN)/hairlut
@@ -26,7 +27,7 @@ help:
 	@echo "make report   regenerate tests/report/pages/: speed against error, hard cases, the study, shaders, explorer"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
 	@echo "make render   render the hair scene with the Mitsuba plugin (about 10 minutes)"
-	@echo "make fuzz     60 seconds of coverage-guided fuzzing of the loader and the memory path"
+	@echo "make fuzz     coverage-guided fuzzing, SECONDS_EACH=15 a fuzzer: files, tables in memory, table to file to table"
 	@echo "make clean    remove $(VENV) and $(BUILD)/"
 
 check:
@@ -88,7 +89,7 @@ render: setup
 	$(REPORT).render
 
 fuzz: setup
-	tests/fuzz/fuzz.sh 60
+	tests/fuzz/fuzz.sh $(SECONDS_EACH)
 
 clean:
 	rm -rf $(VENV) $(BUILD)

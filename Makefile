@@ -36,9 +36,14 @@ check:
 $(VENV)/.ready: precompute/pyproject.toml | check
 	"$(PYTHON)" -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e 'precompute[test]'
+	@touch $@ $(VENV)/.core
+
+# the Python extension again when the C library has changed
+$(VENV)/.core: $(VENV)/.ready $(wildcard runtime/src/* runtime/include/* runtime/python/*)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e precompute
 	@touch $@
 
-setup: check $(VENV)/.ready
+setup: check $(VENV)/.core
 
 extras: setup
 	@./runtime/packages.sh extras

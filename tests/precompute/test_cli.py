@@ -130,7 +130,7 @@ def test_help_has_examples(command, capsys):
 
 
 def test_help_and_version(capsys):
-    for argument, said in (("--help", "exit codes: 0"), ("--version", "hairlut 1.")):
+    for argument, said in (("--help", "exit codes: 0"), ("--version", "hairlut 2.")):
         with pytest.raises(SystemExit) as ended:
             cli.main([argument])
         assert ended.value.code == 0

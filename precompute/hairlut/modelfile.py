@@ -23,7 +23,8 @@ import its neighbours; userfile.py says how it runs. precompute/examples/ contai
 A **TOML file** gives Gaussians as numbers: tomlmodel.py.
 
 An **npz file** holds masses of cells, as `hairlut fit` writes them: for each lobe NAME the arrays NAME.edges,
-NAME.theta_r and NAME.mass of tabulated.TabulatedDensity, and the string `azimuth`.
+NAME.theta_r and NAME.mass of tabulated.TabulatedDensity, the string `azimuth`, and the number LOBE.share of
+each lobe, if the shares are not equal.
 """
 
 from __future__ import annotations
@@ -288,9 +289,13 @@ def _from_toml(path: Path) -> Given:
 
 def _from_npz(path: Path) -> Given:
     arrays = read_npz(path, text=("azimuth",))
+    azimuth = str(arrays.pop("azimuth", DIFFERENCE))
+    shares = {key.removesuffix(".share"): arrays.pop(key) for key in list(arrays) if key.endswith(".share")}
+    if any(share.size != 1 for share in shares.values()):
+        raise HairlutError(f"{path}: a share has several numbers: expected one for each lobe")
     names = [key.removesuffix(".edges") for key in arrays if key.endswith(".edges")]
-    expected = {f"{name}.{key}" for name in names for key in ("edges", "theta_r", "mass")} | {"azimuth"}
-    missing, unknown = sorted(expected - {*arrays, "azimuth"}), sorted({*arrays} - expected)
+    expected = {f"{name}.{key}" for name in names for key in ("edges", "theta_r", "mass")}
+    missing, unknown = sorted(expected - {*arrays}), sorted({*arrays} - expected)
     if missing or unknown or not names:
         problem = f"array {(missing or unknown or ['NAME.edges'])[0]} is "
         problem += "not known" if unknown and not missing else "missing"
@@ -305,4 +310,4 @@ def _from_npz(path: Path) -> Given:
         ]
     except HairlutError as error:
         raise HairlutError(f"{path}: {error}") from None
-    return Given(given, str(arrays.get("azimuth", DIFFERENCE)))
+    return Given(given, azimuth, {lobe: float(share.item()) for lobe, share in shares.items()} or None)

@@ -88,7 +88,8 @@ def _named(path: Path) -> Iterator[None]:
         yield
     except HairlutError as error:
         text = str(error)
-        raise HairlutError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+        where = f"{path}{line_of(error, path)}: "
+        raise HairlutError(text if text.startswith(str(path)) else where + text) from None
     except KeyboardInterrupt:
         raise
     except BaseException as error:

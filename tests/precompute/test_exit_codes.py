@@ -159,7 +159,7 @@ WRONG = {
     "fit inputs/grid_whole.csv --measure both": "invalid choice",
     "fit inputs/grid_whole.csv --rows 1": "--rows 1: expected 2 or more",
     "fit quits_bsdf.py": "quits_bsdf.py:4: calls sys.exit()",
-    "fit asks_bsdf.py": "asks_bsdf.py: reads standard input",
+    "fit asks_bsdf.py": "asks_bsdf.py:4: reads standard input",
     "fit nan_bsdf.py": "nan_bsdf.py",
     "fit hair.py": "hair.py",
     "fit bsdf.py --tolerance 0": "--tolerance 0",
@@ -215,6 +215,14 @@ def test_wrong_use_ends_with_2_and_writes_nothing(command, place):
 def test_json_is_all_that_is_printed(command, place):
     _, out, _ = run(place, command)
     assert isinstance(json.loads(out), list)
+
+
+@pytest.mark.parametrize("model", ["grid_whole_masses.npz", "grid_whole_gaussians.toml"])
+def test_what_a_fit_wrote_is_a_model(model, place):
+    assert run(place, "fit inputs/grid_whole.csv --out models")[0] == cli.OK
+    code, out, err = run(place, f"bake --model models/{model} --size 16x8 --out baked")
+    assert (code, err) == (cli.OK, "")
+    assert "direct, multiple" in out
 
 
 def test_a_bsdf_says_as_json_what_it_made(place):

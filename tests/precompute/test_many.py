@@ -104,7 +104,7 @@ def test_a_model_that_waits_for_an_answer_fails(hairs, tmp_path):
     (hairs / "asks.py").write_text("input()\n")
     done = bake(hairs, tmp_path / "out")
     assert "3 models: 2 baked, 0 up to date, 1 failed" in done.stdout
-    assert "asks.py: reads standard input" in done.stderr
+    assert "asks.py:1: reads standard input" in done.stderr
 
 
 LOOPS = {

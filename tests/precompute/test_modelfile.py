@@ -415,6 +415,21 @@ def test_a_mistake_in_toml_is_named(mistake, tmp_path):
         assert part in str(caught.value)
 
 
+def test_an_npz_gives_shares(tmp_path):
+    edges = np.linspace(-np.pi / 2, np.pi / 2, 5)
+    tables = {"a_theta.edges": edges, "a_theta.theta_r": np.zeros(1), "a_theta.mass": np.ones((1, 4))}
+    tables |= {f"b{key[1:]}": values for key, values in tables.items()}
+    path = tmp_path / "hair.npz"
+    np.savez(path, **tables, **{"a.share": 0.25, "b.share": 0.75})
+    assert modelfile.find(str(path)).shares == (0.25, 0.75)
+    np.savez(path, **tables, **{"a.share": 0.25})
+    with pytest.raises(HairlutError, match="shares of a: expected a number for each of a, b"):
+        modelfile.find(str(path))
+    np.savez(path, **tables, **{"a.share": np.ones(2), "b.share": 1})
+    with pytest.raises(HairlutError, match="a share has several numbers"):
+        modelfile.find(str(path))
+
+
 def test_an_npz_without_an_array_is_refused(tmp_path):
     np.savez(tmp_path / "hair.npz", azimuth="difference")
     with pytest.raises(HairlutError, match=r"hair\.npz: array NAME\.edges is missing"):

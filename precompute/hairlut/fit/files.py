@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..files import write_whole
-from ..lobes import DIFFERENCE, DIRECT_PHI, Array
+from ..lobes import DIFFERENCE, DIRECT, DIRECT_PHI, MULTIPLE, Array
 from .model import FAILS, Fit, GaussianFit
 
 ROW_STEP = 5.0
@@ -38,7 +38,8 @@ def write_all(fit: Fit, folder: Path, name: str) -> tuple[Path, Path, Path]:
 
 def _npz(fit: Fit) -> bytes:
     data, split = fit.data, fit.split
-    arrays = {"azimuth": np.array(DIFFERENCE), "direct_weight": np.array(split.direct_weight)}
+    weight = split.direct_weight
+    arrays = {"azimuth": np.array(DIFFERENCE), f"{DIRECT}.share": weight, f"{MULTIPLE}.share": 1 - weight}
     for name, mass, edges in split.tables(data):
         arrays |= {f"{name}.edges": edges, f"{name}.theta_r": data.theta_r, f"{name}.mass": mass}
     file = BytesIO()
@@ -50,12 +51,16 @@ def toml(fit: Fit) -> str:
     """The Gaussians as a model file: the polynomials' values every ROW_STEP degrees of the data's range."""
     low, high = np.degrees(fit.data.theta_r[[0, -1]])
     steps = max(int(np.ceil((high - low) / ROW_STEP)), 1)
-    theta_r = np.linspace(low, high, steps + 1)
+    theta_r = np.unique(np.linspace(low, high, steps + 1))
+    weight = fit.split.direct_weight
     lines = [
         "# Gaussians fitted by hairlut fit; bake with: hairlut bake --model THIS_FILE",
-        f"# draw from the direct lobes with probability {fit.split.direct_weight:.4g}",
         "",
         f'azimuth = "{DIFFERENCE}"',
+        "",
+        "[shares]",
+        f"{DIRECT} = {weight:.6g}",
+        f"{MULTIPLE} = {1 - weight:.6g}",
     ]
     for gaussian in fit.gaussians:
         lines += ["", f"[{gaussian.name}]", *_polynomials(gaussian), f"theta_r_deg = {_numbers(theta_r)}"]
@@ -147,7 +152,7 @@ def text(fit: Fit) -> str:
     """The fit for a terminal."""
     data = fit.data
     lines = [
-        f"direct_weight {fit.split.direct_weight:.4g}: give this number to hairlut_sample_mixture",
+        f"share of the direct lobe: {fit.split.direct_weight:.4g}",
         "",
         "relative variance of drawing this data (0 is perfect, 1 costs twice the samples)",
         f"{'theta_r [deg]':>14} {'uniform':>10} {'marginals':>10} {'masses':>10} {'Gaussians':>10}",

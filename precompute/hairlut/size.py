@@ -30,7 +30,7 @@ from .sketch import EXPONENTS, MIN_STEPS, Sketch, usable
 from .table import Table, check_size, tabulate
 from .warp import Warp
 
-DEFAULT_TOLERANCE = 1e-5
+DEFAULT_TOLERANCE = 2e-5
 DEFAULT_LIMIT = 256
 FIRST_WIDTH = 24
 ORDER = 4.5  # V falls about as this power of the width on rows, and as

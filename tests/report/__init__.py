@@ -24,6 +24,10 @@ PAGES = (
         "[The study](study.md)",
         "why this warp, these cells, these ends: every alternative on the same measure",
     ),
+    (
+        "[Quasi-random numbers](quasi.md)",
+        "the error of a lighting integral with Sobol points, beside the exact inverse's",
+    ),
     ("[In a renderer](render.md)", "variance and bias of a rendered lock of hair"),
     ("[A scene's own hair](fit.md)", "tables fitted to a hair BSDF, beside that BSDF's own sampler"),
     ("[Shaders](shaders.md)", "the same tables on the GPU's side, checked against C"),
@@ -31,7 +35,7 @@ PAGES = (
 )
 
 AFTER = """
-`make report` writes the first four again, `hairlut plot luts` draws each table.
+`make report` writes the first five again, `hairlut plot luts` draws each table.
 
 ![Time per sample against relative variance](speed_error.svg)
 
@@ -55,9 +59,16 @@ def progress(title: str) -> Iterator[Callable[[str], None]]:
 
 
 def write(out: Path, luts: Path, bench: Path, parts: Iterable[str]) -> list[Path]:
-    """Writes the index and the pages of the parts named ("speed", "scale", "hard", "study", "pictures")."""
+    """Writes the index and the pages of the parts named, of those that __main__ lists."""
     out.mkdir(parents=True, exist_ok=True)
-    pages = {"speed": _speed, "scale": _scale, "hard": _hard, "study": _study, "pictures": _pictures}
+    pages = {
+        "speed": _speed,
+        "scale": _scale,
+        "hard": _hard,
+        "study": _study,
+        "quasi": _quasi,
+        "pictures": _pictures,
+    }
     written = [page for part in parts for page in pages[part](out, luts, bench)]
     (out / "README.md").write_text(index())
     return [*written, out / "README.md"]
@@ -104,6 +115,15 @@ def _scale(out: Path, luts: Path, bench: Path) -> list[Path]:
     page = out / "scale.md"
     page.write_text(scale.page(times))
     return [page]
+
+
+def _quasi(out: Path, luts: Path, bench: Path) -> list[Path]:
+    from report import quasi
+
+    page, figure = out / "quasi.md", out / "quasi.svg"
+    with progress("quasi-random numbers") as step:
+        page.write_text(quasi.page(luts, figure, step))
+    return [page, figure]
 
 
 def _hard(out: Path, luts: Path, bench: Path) -> list[Path]:

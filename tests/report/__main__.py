@@ -1,4 +1,4 @@
-"""Writes the pages of the report: speed, scale, the hard cases and the study, with their plots.
+"""Writes the pages of the report: speed, scale, hard cases, the study, quasi-random numbers, with plots.
 
 PYTHONPATH=tests .venv/bin/python -m report --bench build/bench/hairlut_bench     some minutes
 PYTHONPATH=tests .venv/bin/python -m report --only hard --out pages
@@ -13,7 +13,7 @@ from hairlut.extras import needed_for_plots
 from report import write
 from report.places import PAGES, ROOT
 
-PARTS = ("speed", "scale", "hard", "study", "pictures")
+PARTS = ("speed", "scale", "hard", "study", "quasi", "pictures")
 
 
 def parse() -> argparse.Namespace:

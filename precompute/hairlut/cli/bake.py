@@ -22,7 +22,7 @@ from . import CHECK_FAILED, OK, add_command
 NARROW = 0.01  # of its domain: a lobe whose half lies within less needs a tall and wide table
 
 EXAMPLES = """examples:
-  hairlut bake                                      the built-in models into luts/, with V <= 1e-5
+  hairlut bake                                      the built-in models into luts/, with V <= 2e-5
   hairlut bake --model fitted --tolerance 1e-3 --out small
   hairlut bake --size 64x64 --out square
   hairlut bake --size 64x64 --warp uniform --out baseline

@@ -1,10 +1,8 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* BSDF plugin "hairlut" for Mitsuba 3, variant scalar_rgb: values from a nested hair BSDF, directions from hairlut.
  *
- *   model          string  "fitted" (default), "printed", or a directory that holds the three EXR files of a model
- *   direct_weight  float   probability of the direct lobe against the multiple lobe, in [0,1] (default 0.5)
- *   family         string  in place of model: a directory with the family.txt and the baked models of a hair whose
- *                          scattering depends on the offset at which the fibre is hit (hairlut fit, hairlut bake)
- *   nested_weight  float   probability of the nested BSDF's own sampling, in [0,1] (default 0)
+ *   model          string  a compiled-in model, such as "fitted" (default), or a directory of textures (luts/FORMAT.md)
+ *   mix            float   probability of the nested BSDF's own sampling, in [0,1] (default 0)
  *   uniform        boolean draw uniformly from the sphere in place of the tables, for comparison (default false)
  *   light_sampling boolean false claims Dirac samples, so that integrators find light by this BSDF's sampling alone, for
  *                          comparison (default true)
@@ -14,7 +12,12 @@
  * normal, local +z, towards local +x. Mitsuba's si.wi is the viewer direction (theta_r, phi_r), its wo the incident one
  * (theta_i, phi_i). The density is per steradian over the whole sphere; both sides of the surface are sampled.
  *
- * Only scalar_rgb is registered: the C library samples one direction per call and does not trace for Dr.Jit. */
+ * The offset is h = sin(phi_r): a ray that passes a round fibre's axis at the distance h, in radii, meets the surface normal at
+ * asin(h), measured around the fibre. The surface mirrors it to phi_i = -phi_r, the relative azimuth -2 asin(h), which is the
+ * sign that hairlut.h expects. A viewer behind the surface, which curves do not have, counts as its mirror image in front.
+ *
+ * Only scalar_rgb is registered: the C library samples one direction a call and is not traced by Dr.Jit. */
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -24,9 +27,6 @@
 #include <mitsuba/render/bsdf.h>
 
 #include <hairlut.h>
-
-#include "family.h"
-#include "tables.h"
 
 NAMESPACE_BEGIN(mitsuba)
 
@@ -45,6 +45,29 @@ template <typename Vector> Angles angles_of(const Vector &w) {
     return a;
 }
 
+/// Where the viewer's ray passes the fibre, in radii from its axis: sin(phi_r).
+template <typename Vector> float offset_of(const Vector &wi) {
+    const float across = std::hypot(wi.x(), wi.z());
+    return across > 0.f ? wi.x() / across : 0.f;
+}
+
+/// A compiled-in model, which is never released, or that of a directory.
+std::shared_ptr<const hairlut_model> load_model(const std::string &name) {
+    if (const hairlut_model *builtin = hairlut_builtin(name.c_str()))
+        return { builtin, [](const hairlut_model *) {} };
+    hairlut_model *loaded = nullptr;
+    char message[HAIRLUT_MESSAGE_SIZE] = "the plugin was built without OpenEXR";
+#ifdef HAIRLUT_WITHOUT_EXR
+    const hairlut_result result = HAIRLUT_ERROR_UNSUPPORTED;
+#else
+    const hairlut_result result = hairlut_load_with(name.c_str(), nullptr, &loaded, message);
+#endif
+    if (result != HAIRLUT_OK)
+        Throw("hairlut: model \"%s\" is neither compiled in, as \"printed\" and \"fitted\" are, nor a directory of textures: %s "
+              "(%s)", name, message, hairlut_result_string(result));
+    return { loaded, hairlut_free };
+}
+
 } // namespace
 
 template <typename Float, typename Spectrum> class HairlutBSDF final : public BSDF<Float, Spectrum> {
@@ -53,8 +76,11 @@ public:
     MI_IMPORT_TYPES()
 
     explicit HairlutBSDF(const Properties &props) : Base(props) {
-        load(props);
-        m_nested_weight = probability(props, "nested_weight", 0.f);
+        m_name = props.get<std::string>("model", "fitted");
+        m_model = load_model(m_name);
+        m_mix = props.get<ScalarFloat>("mix", 0.f);
+        if (!(m_mix >= 0.f && m_mix <= 1.f))
+            Throw("hairlut: mix is %f: expected a probability, 0 to 1", m_mix);
         m_uniform = props.get<bool>("uniform", false);
         for (auto &prop : props.objects())
             if (Base *bsdf = prop.template try_get<Base>()) {
@@ -78,23 +104,23 @@ public:
                                              const Point2f &sample2, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
         BSDFSample3f bs = dr::zeros<BSDFSample3f>();
-        if (sample1 < m_nested_weight) {
+        if (sample1 < m_mix) {
             Spectrum weight;
-            std::tie(bs, weight) = m_nested->sample(ctx, si, sample1 / m_nested_weight, sample2, active);
+            std::tie(bs, weight) = m_nested->sample(ctx, si, sample1 / m_mix, sample2, active);
             bs.sampled_type = m_sampled_type;
-            if (m_nested_weight >= 1.f || !(bs.pdf > 0.f))
+            if (m_mix >= 1.f || !(bs.pdf > 0.f))
                 return { bs, weight };
             auto [value, density] = eval_pdf(ctx, si, bs.wo, active);
             bs.pdf = density;
             return { bs, density > 0.f ? value / density : Spectrum(0.f) };
         }
-        const Proposal drawn = propose(si, (sample1 - m_nested_weight) / (1.f - m_nested_weight), sample2);
+        const Proposal drawn = propose(si, (sample1 - m_mix) / (1.f - m_mix), sample2);
         bs.wo = drawn.wo;
         bs.eta = 1.f;
         bs.sampled_type = m_sampled_type;
         bs.sampled_component = 0;
         auto [value, nested_pdf] = eval_nested(ctx, si, bs.wo, active);
-        bs.pdf = mix(nested_pdf, drawn.pdf);
+        bs.pdf = mixed(nested_pdf, drawn.pdf);
         return { bs, bs.pdf > 0.f ? value / bs.pdf : Spectrum(0.f) };
     }
 
@@ -105,14 +131,14 @@ public:
 
     Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
-        return mix(m_nested_weight > 0.f ? m_nested->pdf(ctx, si, wo, active) : Float(0.f), si, wo);
+        return mixed(m_mix > 0.f ? m_nested->pdf(ctx, si, wo, active) : Float(0.f), si, wo);
     }
 
     std::pair<Spectrum, Float> eval_pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
                                         Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
         auto [value, nested_pdf] = eval_nested(ctx, si, wo, active);
-        return { value, mix(nested_pdf, si, wo) };
+        return { value, mixed(nested_pdf, si, wo) };
     }
 
     Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
@@ -126,9 +152,8 @@ public:
     std::string to_string() const override {
         std::ostringstream oss;
         oss << "HairlutBSDF[" << std::endl
-            << (m_family ? "  family = " : "  model = ") << m_name << "," << std::endl
-            << "  direct_weight = " << m_direct_weight << "," << std::endl
-            << "  nested_weight = " << m_nested_weight << "," << std::endl
+            << "  model = " << m_name << "," << std::endl
+            << "  mix = " << m_mix << "," << std::endl
             << "  uniform = " << m_uniform << "," << std::endl
             << "  nested = " << string::indent(m_nested) << std::endl
             << "]";
@@ -139,28 +164,6 @@ public:
 
 private:
     static constexpr uint32_t DIRAC = BSDFFlags::DeltaReflection | BSDFFlags::FrontSide | BSDFFlags::BackSide;
-
-    static float probability(const Properties &props, const char *name, float fallback) {
-        const float p = props.get<ScalarFloat>(name, fallback);
-        if (!(p >= 0.f && p <= 1.f))
-            Throw("hairlut: %s is %f: expected a probability, 0 to 1", name, p);
-        return p;
-    }
-
-    /// The tables that directions are drawn from: of one model, or of a family.
-    void load(const Properties &props) {
-        m_direct_weight = probability(props, "direct_weight", .5f);
-        if (!props.has_property("family")) {
-            m_name = props.get<std::string>("model", "fitted");
-            m_tables = std::make_unique<HairlutTables>(m_name);
-            return;
-        }
-        for (const char *other : { "model", "direct_weight" })
-            if (props.has_property(other))
-                Throw("hairlut: %s is given beside family, which brings its own: remove one of the two", other);
-        m_name = props.get<std::string>("family");
-        m_family = std::make_unique<HairlutFamily>(m_name);
-    }
 
     struct Proposal {
         Vector3f wo;
@@ -174,9 +177,8 @@ private:
             return { wo, warp::square_to_uniform_sphere_pdf(wo) };
         }
         const Angles r = angles_of(si.wi);
-        const hairlut_sample s =
-            m_family ? m_family->sample(r.theta, r.phi, u_lobe, u.x(), u.y())
-                     : hairlut_sample_mixture(m_tables->get(), m_direct_weight, r.theta, r.phi, u_lobe, u.x(), u.y());
+        const hairlut_sample s = hairlut_sample_hair(m_model.get(), nullptr, r.theta, r.phi, offset_of(si.wi), u_lobe,
+                                                     u.x(), u.y());
         float wo[3];
         hairlut_direction(&local_frame, s.theta_i, s.phi_i, wo);
         return { { wo[0], wo[1], wo[2] }, s.pdf_solid_angle };
@@ -188,31 +190,28 @@ private:
             return warp::square_to_uniform_sphere_pdf(wo);
         const Angles r = angles_of(si.wi), i = angles_of(wo);
         return hairlut_pdf_to_solid_angle(
-            m_family ? m_family->pdf(r.theta, r.phi, i.theta, i.phi)
-                     : hairlut_pdf_mixture(m_tables->get(), m_direct_weight, r.theta, r.phi, i.theta, i.phi),
-            i.theta);
+            hairlut_pdf_hair(m_model.get(), nullptr, r.theta, r.phi, offset_of(si.wi), i.theta, i.phi), i.theta);
     }
 
     /// The nested value, and its density where it counts.
     std::pair<Spectrum, Float> eval_nested(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
                                            Mask active) const {
-        if (m_nested_weight > 0.f)
+        if (m_mix > 0.f)
             return m_nested->eval_pdf(ctx, si, wo, active);
         return { m_nested->eval(ctx, si, wo, active), 0.f };
     }
 
-    Float mix(Float nested_pdf, const SurfaceInteraction3f &si, const Vector3f &wo) const {
-        return m_nested_weight >= 1.f ? nested_pdf : mix(nested_pdf, proposal_pdf(si, wo));
+    Float mixed(Float nested_pdf, const SurfaceInteraction3f &si, const Vector3f &wo) const {
+        return m_mix >= 1.f ? nested_pdf : mixed(nested_pdf, proposal_pdf(si, wo));
     }
 
-    Float mix(Float nested_pdf, Float proposal_pdf) const {
-        return m_nested_weight * nested_pdf + (1.f - m_nested_weight) * proposal_pdf;
+    Float mixed(Float nested_pdf, Float proposal_pdf) const {
+        return m_mix * nested_pdf + (1.f - m_mix) * proposal_pdf;
     }
 
     std::string m_name;
-    std::unique_ptr<HairlutTables> m_tables; // this one or the next
-    std::unique_ptr<HairlutFamily> m_family;
-    float m_direct_weight, m_nested_weight;
+    std::shared_ptr<const hairlut_model> m_model;
+    float m_mix;
     bool m_uniform;
     uint32_t m_sampled_type;
     ref<Base> m_nested;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The engine with the plugin: builds it where its wheel allows, and makes it known to Mitsuba."""
 
 from __future__ import annotations
@@ -13,14 +14,24 @@ DEFAULT_BUILD = PLUGIN_SOURCE.parents[1] / "build" / "mitsuba"
 
 
 class PluginUnavailable(RuntimeError):
-    """The plugin cannot be built or loaded here; the message says what is missing and what brings it."""
+    """A package is missing without which nothing can be built; the message says what brings it."""
 
 
-def _run(command: list[str]) -> str:
+class PluginBroken(RuntimeError):
+    """Everything is there, but the plugin does not build; the message has what the compiler said."""
+
+
+def _run(command: list[str]) -> None:
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
-        raise PluginUnavailable(f"{' '.join(command)} failed:\n{result.stdout}{result.stderr}")
-    return result.stdout
+        raise PluginBroken(f"{' '.join(command)} failed:\n{result.stdout}{result.stderr}")
+
+
+def _check_wheels() -> None:
+    wheels = [sys.executable, str(PLUGIN_SOURCE / "wheels.py")]
+    result = subprocess.run(wheels, capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise PluginUnavailable(result.stderr.strip())
 
 
 def _cmake() -> str:
@@ -32,11 +43,11 @@ def _cmake() -> str:
 
 
 def build_plugin(build: Path = DEFAULT_BUILD) -> Path:
-    """Builds what is out of date; returns the folder to append to the engine's file resolver."""
-    try:
-        _run([sys.executable, str(PLUGIN_SOURCE / "wheels.py")])
-    except PluginUnavailable as error:
-        raise PluginUnavailable(str(error).split(":\n", 1)[1].strip()) from None
+    """Builds what is out of date; returns the folder to append to the engine's file resolver.
+
+    PluginUnavailable if a package is missing, PluginBroken if the sources do not build.
+    """
+    _check_wheels()
     cmake = _cmake()
     _run([cmake, "-S", str(PLUGIN_SOURCE), "-B", str(build), f"-DPython_EXECUTABLE={sys.executable}"])
     _run([cmake, "--build", str(build), "--parallel", "2"])
@@ -44,7 +55,7 @@ def build_plugin(build: Path = DEFAULT_BUILD) -> Path:
 
 
 def load_engine(build: Path = DEFAULT_BUILD) -> Any:
-    """The module mitsuba in variant scalar_rgb, which knows the BSDF `hairlut`; raises PluginUnavailable."""
+    """The module mitsuba in variant scalar_rgb, which knows the BSDF `hairlut`; raises as build_plugin."""
     folder = build_plugin(build)
     import mitsuba
 
@@ -55,11 +66,14 @@ def load_engine(build: Path = DEFAULT_BUILD) -> Any:
 
 
 def main() -> int:
-    """Prints the folder that holds plugins/, or says on stderr why there is none."""
+    """Prints the folder that holds plugins/, or says on stderr why there is none; 1 if it does not build."""
     try:
         print(build_plugin())
     except PluginUnavailable as error:
         print(f"SKIPPED: the Mitsuba plugin is not built. {error}", file=sys.stderr)
+    except PluginBroken as error:
+        print(error, file=sys.stderr)
+        return 1
     return 0
 
 

@@ -1,4 +1,8 @@
-"""The engine with the plugin, or a skip that says what is missing."""
+# SPDX-License-Identifier: BSD-3-Clause
+"""The engine with the plugin, or a skip that says which package is missing.
+
+Where the packages are, a plugin that does not build is a failure.
+"""
 
 from pathlib import Path
 

@@ -106,7 +106,13 @@ def reference(mi, hair_scene, nested):
 @pytest.mark.parametrize("sky", ["even", "bright side"])
 @pytest.mark.parametrize(
     "parameters",
-    [{"model": "printed"}, {"model": "fitted"}, {"nested_weight": 0.5}, {"light_sampling": False}],
+    [
+        {"model": "printed"},
+        {"model": "fitted"},
+        {"model": "brown"},
+        {"mix": 0.5},
+        {"light_sampling": False},
+    ],
     ids=str,
 )
 def test_mean_image_is_the_reference(mi, hair_scene, nested, reference, parameters, sky):
@@ -129,8 +135,8 @@ def test_a_wrong_density_darkens_the_image_under_a_bright_side(mi, hair_scene, w
         {"uniform": True},
         {"model": "printed"},
         {"model": "fitted"},
-        {"nested_weight": 0.5},
-        {"direct_weight": 1.0},
+        {"model": "brown"},
+        {"mix": 0.5},
     ],
     ids=str,
 )

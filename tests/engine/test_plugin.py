@@ -7,12 +7,14 @@ import pytest
 from engine.chisquare import cell_masses, interaction, p_value, sample_angles
 
 from report.hairscene.nearfield import direction
+from report.hairscene.shares import with_shares
 
 HAIR = {"type": "hair", "longitudinal_roughness": 0.5, "azimuthal_roughness": 0.5}
 # (theta_r, phi_r) in degrees: facing, tilted both ways, across the fibre's edge, along the fibre, from behind
 VIEWERS = [(0, 0), (0, 89), (30, -45), (-30, 45), (60, 10), (-60, -80), (80, 89), (-85, 20), (40, 170)]
-SETTINGS = {"printed": {"model": "printed"}, "fitted": {"model": "fitted"}, "uniform": {"uniform": True}}
-CASES = [(name, viewer) for name in ("printed", "fitted") for viewer in VIEWERS] + [("uniform", (30, -45))]
+MODELS = ("printed", "fitted", "brown")
+SETTINGS = {**{name: {"model": name} for name in MODELS}, "uniform": {"uniform": True}}
+CASES = [(name, viewer) for name in MODELS for viewer in VIEWERS] + [("uniform", (30, -45))]
 COUNT = 700_000
 ROWS, COLUMNS = 10, 20
 SIGNIFICANCE = 0.01 / len(CASES)
@@ -56,16 +58,17 @@ def test_chi_square_rejects_a_density_off_by_two_percent(mi, drawn, name, viewer
 def test_chi_square_rejects_two_percent_moved_around_the_fibre(mi, drawn, name, viewer):
     """The integral stays 1, so only the shape of the density can give it away."""
     angles, masses = drawn(name, viewer)
-    half = np.where(np.arange(COLUMNS) < COLUMNS // 2, 1.0, -1.0)
+    before = np.cumsum(masses.T).reshape(masses.T.shape).T  # column by column, around the fibre
+    half = np.where(before < masses.sum() / 2, 1.0, -1.0)
     half -= (masses * half).sum() / masses.sum()
     assert p_value(mi, angles, masses * (1.0 + 0.02 * half), COUNT) < SIGNIFICANCE
 
 
-@pytest.mark.parametrize("nested_weight", [0.0, 0.5])
+@pytest.mark.parametrize("mix", [0.0, 0.5])
 @pytest.mark.parametrize("name", SETTINGS)
-def test_weight_is_value_over_density(mi, name, nested_weight):
+def test_weight_is_value_over_density(mi, name, mix):
     """The density of a draw is that found again, to the rounding of its direction (test_components.py)."""
-    bsdf = make(mi, nested_weight=nested_weight, **SETTINGS[name])
+    bsdf = make(mi, mix=mix, **SETTINGS[name])
     nested = mi.load_dict(HAIR)
     context, off = mi.BSDFContext(), []
     for viewer in VIEWERS:
@@ -84,8 +87,8 @@ def test_weight_is_value_over_density(mi, name, nested_weight):
     assert np.median(off) < 1e-6
 
 
-def test_nested_weight_of_one_is_the_nested_sampler_unchanged(mi):
-    bsdf, nested = make(mi, nested_weight=1.0), mi.load_dict(HAIR)
+def test_mix_of_one_is_the_nested_sampler_unchanged(mi):
+    bsdf, nested = make(mi, mix=1.0), mi.load_dict(HAIR)
     context = mi.BSDFContext()
     for viewer in VIEWERS:
         si = interaction(mi, *map(math.radians, viewer))
@@ -99,7 +102,7 @@ def test_nested_weight_of_one_is_the_nested_sampler_unchanged(mi):
 
 def test_mixture_density_is_the_weighted_sum(mi):
     tables, own = make(mi), mi.load_dict(HAIR)
-    mixed = make(mi, nested_weight=0.3)
+    mixed = make(mi, mix=0.3)
     context, si = mi.BSDFContext(), interaction(mi, 0.4, -0.7)
     for theta, phi in [(-0.5, 2.4), (0.1, 0.0), (1.2, -2.0)]:
         wo = direction(mi, theta, phi)
@@ -113,10 +116,11 @@ def test_both_sides_and_all_azimuths_are_drawn(mi):
     assert octants.size == 8
 
 
-def test_fitted_proposes_the_far_side_mirrored_along_the_fibre(mi):
+def test_fitted_proposes_the_far_side_mirrored_along_the_fibre(mi, tmp_path):
     """theta_i near -theta_r and phi_i near phi_r + pi: swapped axes, signs, or wi and wo would move it."""
     theta_r, phi_r = math.radians(35.0), math.radians(20.0)
-    angles = sample_angles(mi, make(mi, direct_weight=1.0), interaction(mi, theta_r, phi_r), 20_000, seed=6)
+    bsdf = make(mi, model=str(with_shares("fitted", (1, 0), tmp_path)))
+    angles = sample_angles(mi, bsdf, interaction(mi, theta_r, phi_r), 20_000, seed=6)
     around = np.angle(np.mean(np.exp(1j * (angles[:, 1] - phi_r))))
     assert np.median(angles[:, 0]) == pytest.approx(-theta_r + math.radians(3 * theta_r - 2.0), abs=0.01)
     assert abs(around) == pytest.approx(math.pi, abs=0.02)
@@ -136,8 +140,9 @@ def test_a_directory_of_tables_is_the_compiled_in_model(mi, tables):
     ("parameters", "message"),
     [
         ({"model": "no_such_model"}, "printed.*fitted.*directory"),
-        ({"direct_weight": 1.5}, "direct_weight is 1.5.*expected a probability"),
-        ({"nested_weight": -0.1}, "nested_weight is -0.1.*expected a probability"),
+        ({"mix": 1.5}, "mix is 1.5.*expected a probability"),
+        ({"mix": -0.1}, "mix is -0.1.*expected a probability"),
+        ({"mix": math.nan}, "mix is nan.*expected a probability"),
         ({"nested": {"type": "dielectric"}}, "Dirac"),
         ({"second": {"type": "hair"}}, "one nested BSDF"),
     ],
@@ -151,3 +156,18 @@ def test_wrong_parameters_are_named(mi, parameters, message):
 def test_a_nested_bsdf_is_required(mi):
     with pytest.raises(RuntimeError, match="expected a nested BSDF"):
         mi.load_dict({"type": "hairlut"})
+
+
+def test_a_plugin_that_does_not_build_is_no_reason_to_skip(monkeypatch, tmp_path):
+    """Where the wheels are, a broken source fails the tests."""
+    import plugin
+
+    from report.engine import PluginBroken
+
+    (tmp_path / "wheels.py").write_text((plugin.PLUGIN_SOURCE / "wheels.py").read_text())
+    (tmp_path / "CMakeLists.txt").write_text(
+        'project(broken NONE)\nmessage(FATAL_ERROR "no such function")\n'
+    )
+    monkeypatch.setattr(plugin, "PLUGIN_SOURCE", tmp_path)
+    with pytest.raises(PluginBroken, match="no such function"):
+        plugin.load_engine(tmp_path / "build")

@@ -6,6 +6,6 @@ from report.places import ROOT
 
 sys.path.insert(0, str(ROOT / "runtime" / "mitsuba"))
 
-from plugin import DEFAULT_BUILD, PluginUnavailable, load_engine
+from plugin import DEFAULT_BUILD, PluginBroken, PluginUnavailable, load_engine
 
-__all__ = ["DEFAULT_BUILD", "PluginUnavailable", "load_engine"]
+__all__ = ["DEFAULT_BUILD", "PluginBroken", "PluginUnavailable", "load_engine"]

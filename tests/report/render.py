@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from report.engine import DEFAULT_BUILD, PluginUnavailable, load_engine
+from report.engine import DEFAULT_BUILD, PluginBroken, PluginUnavailable, load_engine
 from report.hairscene.batches import BATCH, Quality, render_all
 from report.places import PAGES
 
@@ -55,6 +55,9 @@ def main() -> int:
     except PluginUnavailable as error:
         print(f"SKIPPED: nothing is rendered. {error}", file=sys.stderr)
         return 0
+    except PluginBroken as error:
+        print(error, file=sys.stderr)
+        return 1
     if not arguments.page_only:
         save(*render_all(mi, quality_of(arguments), DEFAULT_BUILD))
     from report.hairscene.page import write_page

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -20,15 +22,12 @@ from report.hairscene.luminance import luminance
 from report.hairscene.nearfield import direction
 from report.hairscene.samplers import Parameters
 from report.hairscene.scene import light_hair
+from report.hairscene.shares import with_shares
 
 Array = NDArray[np.float64]
 
 VIEWERS = [(theta, h) for theta in (0, 30, 60, 80) for h in (0.0, 0.5, 0.9)]  # theta_r in degrees
-TABLES = {
-    (model, lobe): {"model": model, "direct_weight": lobe}
-    for model in ("printed", "fitted")
-    for lobe in (0, 1)
-}
+MODELS = ("printed", "fitted")
 
 
 def _hair(**parameters: object) -> Parameters:
@@ -92,18 +91,24 @@ def _plugin(mi: Any, hair: Parameters, **parameters: object) -> Any:
     return mi.load_dict({"type": "hairlut", "nested": hair, **parameters})
 
 
-def relative_variances(mi: Any, hair: Parameters, direct_weights: tuple[float, ...]) -> dict[str, float]:
+def _lone(mi: Any, hair: Parameters, model: str, direct: float) -> Any:
+    """The plugin with the direct lobe (1) or the multiple lobe (0) of a model alone."""
+    with TemporaryDirectory() as folder:
+        return _plugin(mi, hair, model=str(with_shares(model, (direct, 1 - direct), Path(folder))))
+
+
+def relative_variances(mi: Any, hair: Parameters, direct_shares: tuple[float, ...]) -> dict[str, float]:
     """Means over VIEWERS, weighted by the fibre's projected length, per sampler."""
     nested = mi.load_dict(hair)
-    tables = {key: _plugin(mi, hair, **parameters) for key, parameters in TABLES.items()}
+    tables = {(model, lobe): _lone(mi, hair, model, lobe) for model in MODELS for lobe in (0, 1)}
     sphere, total, sums = Sphere(), 0.0, dict[str, float]()
     for theta, h in VIEWERS:
         si = _interaction(mi, theta, h)
         f = _values(mi, nested, si, sphere)
         q = {key: _density(mi, table, si, sphere) for key, table in tables.items()}
         densities = {"uniform": np.full_like(f, 0.25 / np.pi)}
-        for model in ("printed", "fitted"):
-            for w in direct_weights:
+        for model in MODELS:
+            for w in direct_shares:
                 densities[f"{model} {w:g}"] = w * q[model, 1] + (1 - w) * q[model, 0]
         weight = math.cos(math.radians(theta))
         total += weight
@@ -127,8 +132,8 @@ def marginals(mi: Any, theta_r: float, places: tuple[float, ...]) -> Marginals:
     """The light hair's value, averaged over the `places` h, beside both lobes of `fitted`."""
     hair = light_hair()
     curves = {"nested BSDF": mi.load_dict(hair)}
-    for name, w in (("direct lobe", 1.0), ("multiple lobe", 0.0), ("both, 0.5 each", 0.5)):
-        curves[name] = _plugin(mi, hair, model="fitted", direct_weight=w)
+    curves |= {name: _lone(mi, hair, "fitted", w) for name, w in (("direct lobe", 1), ("multiple lobe", 0))}
+    curves["both, 0.5 each"] = _plugin(mi, hair, model="fitted")
     by_theta, by_phi = {}, {}
     for name, bsdf in curves.items():
         tabulate = _values if name == "nested BSDF" else _density

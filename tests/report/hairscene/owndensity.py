@@ -60,7 +60,7 @@ def _eta_across(theta_r: float) -> float:
 
 def _shares(hair: dict, theta_r: float, gamma: np.ndarray) -> np.ndarray:
     """(4, N) probabilities of the lobes: their luminances."""
-    absorbed = np.array([hair["eumelanin"], hair["pheomelanin"]]) @ MELANIN
+    absorbed = _absorption(hair)
     inside = np.sqrt(1 - (np.sin(gamma) / _eta_across(theta_r)) ** 2)
     path = 2 * inside / np.sqrt(1 - (np.sin(theta_r) / ETA) ** 2)
     passed = np.exp(-absorbed * path[:, None])
@@ -70,6 +70,13 @@ def _shares(hair: dict, theta_r: float, gamma: np.ndarray) -> np.ndarray:
     rest = again * passed * mirror / (1 - passed * mirror)
     share = luminance(np.stack([np.broadcast_to(mirror, passed.shape), through, again, rest]))
     return share / share.sum(axis=0)
+
+
+def _absorption(hair: dict) -> np.ndarray:
+    """(3,) per radius, of red, green and blue."""
+    if "sigma_a" in hair:
+        return np.full(3, hair["sigma_a"]["value"])
+    return np.array([hair["eumelanin"], hair["pheomelanin"]]) @ MELANIN
 
 
 def _fresnel(cosine: np.ndarray) -> np.ndarray:

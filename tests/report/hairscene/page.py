@@ -22,7 +22,7 @@ GOAL = 2.8  # what the source text measured, at best
 PICTURED = "path"
 SHOWN_COUNTS = (4, 16, 64)
 MAP_COUNT = 16
-DIRECT_WEIGHTS = (0.25, 0.5, 0.75)
+DIRECT_SHARES = (0.25, 0.5, 0.75)
 
 
 class Results:
@@ -214,10 +214,10 @@ def _perception(results: Results) -> str:
 
 
 def _hairs(mi: Any) -> str:
-    names = ["uniform", *(f"{m} {w:g}" for m in ("printed", "fitted") for w in DIRECT_WEIGHTS)]
+    names = ["uniform", *(f"{m} {w:g}" for m in ("printed", "fitted") for w in DIRECT_SHARES)]
     rows = []
     for title, hair in lobes.HAIRS.items():
-        v = lobes.relative_variances(mi, hair, DIRECT_WEIGHTS)
+        v = lobes.relative_variances(mi, hair, DIRECT_SHARES)
         rows.append([title, *(f"{v[name]:.2f}" for name in names), f"{v['uniform'] / v['fitted 0.5']:.1f}"])
     return table(["hair", *names, "gain"], rows)
 

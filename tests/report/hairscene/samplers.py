@@ -10,8 +10,8 @@ SAMPLERS: dict[str, Parameters] = {
     "uniform": {"uniform": True},
     "printed": {"model": "printed"},
     "fitted": {"model": "fitted"},
-    "own": {"nested_weight": 1.0},
-    "mix": {"model": "fitted", "nested_weight": 0.5},
+    "own": {"mix": 1.0},
+    "mix": {"model": "fitted", "mix": 0.5},
 }
 
 LABELS = {

@@ -114,6 +114,16 @@ def light_hair() -> dict[str, object]:
     }
 
 
+def brown_hair() -> dict[str, object]:
+    """The engine's hair as in precompute/examples/chiang2016.py, to which luts/brown is fitted."""
+    return {
+        "type": "hair",
+        "sigma_a": {"type": "rgb", "value": 0.6},
+        "longitudinal_roughness": 0.3,
+        "azimuthal_roughness": 0.3,
+    }
+
+
 def scene_dict(
     mi: Any, strands: Path, bsdf: dict[str, object], size: tuple[int, int], lamps: bool = True
 ) -> dict[str, object]:

@@ -5,9 +5,12 @@ reject a correct library with probability ALPHA (Sidak's correction over TESTS);
 zero fails at once.
 """
 
+import dataclasses
+
 import numpy as np
 import pytest
 from runtime.c_library import AXES, MODELS, ROOT, builtin
+from runtime.models import from_baked
 from runtime.quadrature import integrate, panels
 from scipy.special import chdtrc
 
@@ -16,7 +19,9 @@ from hairlut import exr
 SAMPLES = 1_000_000
 BINS = 200
 INCLINATIONS = np.float32([-np.pi / 2, -1.3, -0.9, -0.4, 0.0, 0.123, 0.6, 1.1, 1.45, np.pi / 2])
-TESTS = len(MODELS) * len(AXES) * len(INCLINATIONS) + 2 * len(MODELS) * 3
+VIEWERS = [(theta_r, phi_r) for theta_r in (-1.35, -0.3, 0.8) for phi_r in (-2.5, 0.0, 2.0)]
+OFFSETS = (-0.85, 0.1, 0.6)
+TESTS = len(MODELS) * len(AXES) * len(INCLINATIONS) + 2 * len(MODELS) * 3 + len(VIEWERS) * len(OFFSETS)
 ALPHA = 0.01
 LEAST_P = 1 - (1 - ALPHA) ** (1 / TESTS)
 LEAST_EXPECTED = 8
@@ -120,6 +125,83 @@ def joint_expected(model, lobe: str, theta_r: float, phi_r: float) -> np.ndarray
     return mass * SAMPLES
 
 
+# ---- the whole hair: bins of equal solid angle ----
+
+
+def on_sphere(s: np.ndarray) -> np.ndarray:
+    """Counts in GRID x GRID bins of equal solid angle."""
+    z = np.sin(s["theta_i"].astype(float))
+    i = np.clip(((z + 1) / 2 * GRID).astype(int), 0, GRID - 1)
+    phi = np.clip(((s["phi_i"] / np.pi + 1) / 2 * GRID).astype(int), 0, GRID - 1)
+    return np.bincount(i * GRID + phi, minlength=GRID * GRID)
+
+
+def expected_on_sphere(density) -> np.ndarray:
+    """The mass of each bin, of density(theta, phi) per rad^2: Gauss-Legendre in theta, midpoints in phi."""
+    nodes, weights = np.polynomial.legendre.leggauss(FINE)
+    ends = np.arcsin(np.linspace(-1, 1, GRID + 1))
+    half = np.diff(ends) / 2
+    theta = ((ends[:-1] + ends[1:]) / 2)[:, None] + half[:, None] * nodes
+    phi = (2 * (np.arange(GRID * FINE) + 0.5) / (GRID * FINE) - 1) * np.pi
+    values = density(*np.meshgrid(theta.ravel(), phi, indexing="ij")).astype(float)
+    values *= (half[:, None] * weights).ravel()[:, None] * 2 * np.pi / (GRID * FINE)
+    return values.reshape(GRID, FINE, GRID, FINE).sum(axis=(1, 3)).ravel()
+
+
+def turned(by: float, lobe: int):
+    """brown with one lobe turned a little further."""
+    baked = exr.read_model(ROOT / "luts" / "brown")
+    turn = baked.mixture.turn.copy()
+    turn[lobe] += by
+    return from_baked(dataclasses.replace(baked, mixture=dataclasses.replace(baked.mixture, turn=turn)))
+
+
+HAIR_SAMPLES = 400_000
+
+
+def p_of_hair(viewer: int, offset: float, expected_from) -> float:
+    """Of samples of brown seen from a viewer, against expected_from(theta_r, phi_r, offset)(theta, phi)."""
+    theta_r, phi_r = np.float32(VIEWERS[viewer])
+    u = np.random.default_rng([11, viewer, OFFSETS.index(offset)]).random((3, HAIR_SAMPLES), np.float32)
+    s = builtin("brown").sample_hair(theta_r, phi_r, *u, offset=offset)
+    return p_value(on_sphere(s), HAIR_SAMPLES * expected_on_sphere(expected_from(theta_r, phi_r, offset)))
+
+
+def density_of(model, shares=None):
+    return lambda theta_r, phi_r, offset: (
+        lambda theta, phi: model.pdf_hair(theta_r, phi_r, theta, phi, offset=offset, shares=shares)
+    )
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+@pytest.mark.parametrize("viewer", range(len(VIEWERS)))
+def test_the_whole_hair_follows_its_density_on_the_sphere(viewer, offset):
+    assert p_of_hair(viewer, offset, density_of(builtin("brown"))) > LEAST_P
+
+
+def mirrored(theta_r, phi_r, offset):
+    return density_of(builtin("brown"))(theta_r, phi_r, -offset)
+
+
+def other_shares(theta_r, phi_r, offset):
+    """Those of the model at an offset nearby."""
+    share = exr.read_model(ROOT / "luts" / "brown").mixture.at(theta_r, offset + 0.1)[0]
+    return density_of(builtin("brown"), share)(theta_r, phi_r, offset)
+
+
+WRONG_HAIR = {
+    "shares": other_shares,
+    "turn": lambda *at: density_of(turned(0.03, 0))(*at),
+    "mirror": mirrored,
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG_HAIR)
+@pytest.mark.parametrize("viewer", [1, 5])
+def test_a_wrong_hair_is_rejected(wrong, viewer):
+    assert p_of_hair(viewer, OFFSETS[2], WRONG_HAIR[wrong]) < LEAST_P
+
+
 def test_p_values_are_uniform_under_the_hypothesis():
     """The statistic itself: histograms that do follow their expectation reject as often as they should."""
     random = np.random.default_rng(31)
@@ -130,5 +212,5 @@ def test_p_values_are_uniform_under_the_hypothesis():
 
 
 def test_the_number_of_tests_counted_is_the_number_there_is():
-    assert TESTS == 60 + 12
+    assert TESTS == 60 + 12 + 27
     assert builtin("printed").name in MODELS

@@ -113,8 +113,6 @@ static inline void pdf_lobe_block(const hairlut_model *model, int lobe, size_t n
 {
     const hairlut_lobe *l = &model->lobes[lobe];
     float azimuth[BLOCK], valid[BLOCK], pdf[BLOCK];
-    if (n == 0)
-        return;
     for (size_t s = 0; s < n; s += LANES) {
         const real phi_r = load(in[1] + s), phi_i = load(in[3] + s);
         const mask is_known = both(known(load(in[0] + s), phi_r, load(in[2] + s), phi_i), is_finite(phi_i));

@@ -8,13 +8,14 @@ out=build/fuzz
 command -v clang >/dev/null || { echo "hairlut: fuzzing needs clang: apt-get install clang libclang-rt-14-dev"; exit 2; }
 mkdir -p "$out"
 src=runtime/src
-core="$src/model.c $src/sample.c $src/density.c $src/mixture.c $src/builtin.c $src/builtin_tables.c"
+sources() { awk -v library="$1" -v folder="$src" '$1 == library && NF == 2 { print folder "/" $2 }' $src/sources.txt; }
+core=$(sources hairlut | grep -v /batch)
 flags="-std=c99 -g -O1 -fno-math-errno -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all"
 include="-Iruntime/include -Iruntime/src -Itests/fuzz"
 clang $flags $include tests/fuzz/fuzz_memory.c $core -lm -o "$out/fuzz_memory"
 targets=fuzz_memory
 if pkg-config --exists OpenEXR; then
-    clang $flags $include $(pkg-config --cflags OpenEXR) tests/fuzz/fuzz_loader.c $src/exr_file.c $src/exr_table.c $core \
+    clang $flags $include $(pkg-config --cflags OpenEXR) tests/fuzz/fuzz_loader.c $(sources hairlut_exr) $core \
         -lOpenEXRCore -lm -o "$out/fuzz_loader"
     targets="fuzz_memory fuzz_loader"
 else

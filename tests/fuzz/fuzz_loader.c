@@ -1,9 +1,10 @@
-/* libFuzzer target: the input is a table file. */
+/* libFuzzer target: the input is a file of a model: a table, of either format, or a mixture. */
 #include <openexr.h>
 #include <string.h>
 
 #include "check.h"
-#include "exr_table.h"
+#include "exr_mixture.h"
+#include "straight.h"
 
 typedef struct blob {
     const uint8_t *data;
@@ -38,45 +39,81 @@ static int mentions(const blob *b, const char *word)
     return 0;
 }
 
-/* A model whose other tables are straight lines. */
-static void use(const hairlut_exr_table *loaded, int is_azimuth)
+/* A model of the table. */
+static void use_table(const hairlut_table *table, hairlut_azimuth azimuth, int is_azimuth)
 {
-    static const float theta[8] = {-1.57079637f, -0.5f, 0.5f, 1.57079637f, -1.57079637f, -0.5f, 0.5f, 1.57079637f};
-    static const float phi[8] = {0.0f, 2.0f, 4.0f, 6.28318548f, 0.0f, 2.0f, 4.0f, 6.28318548f};
-    const hairlut_table straight = {theta, 4, 2, -1.5f, 1.5f, theta[0], theta[3], HAIRLUT_WARP_OCTAVES, 1e-6f, 0.9f};
-    const hairlut_table circle = {phi, 4, 2, -1.5f, 1.5f, phi[0], phi[3], HAIRLUT_WARP_UNIFORM, 0.0f, 0.0f};
-    const hairlut_model_desc desc = {is_azimuth ? straight : loaded->table, is_azimuth ? loaded->table : circle,
-                                     is_azimuth ? straight : loaded->table, loaded->azimuth};
+    const hairlut_lobe_desc lobe = {sizeof lobe, "only", is_azimuth ? &straight_theta : table, is_azimuth ? table : &straight_phi, azimuth};
+    const hairlut_model_desc desc = {sizeof desc, 1, &lobe, NULL};
     hairlut_model *model;
-    char message[HAIRLUT_MESSAGE_SIZE];
-    if (hairlut_model_create(&desc, NULL, &model, message) != HAIRLUT_OK)
+    if (hairlut_model_create(&desc, NULL, &model, NULL) != HAIRLUT_OK)
         return;
     check_model(model);
     hairlut_free(model);
+}
+
+/* A model of the mixture, whose tables are straight. */
+static void use_mixture(const hairlut_exr_mixture *mixture)
+{
+    hairlut_lobe_desc lobes[HAIRLUT_MAX_LOBES];
+    for (int k = 0; k < mixture->lobe_count; ++k) {
+        const hairlut_lobe_desc lobe = {sizeof lobe, mixture->lobes[k].name, &straight_theta,
+                                        mixture->lobes[k].phi.table[0] ? &straight_phi : NULL, HAIRLUT_AZIMUTH_DIFFERENCE};
+        lobes[k] = lobe;
+    }
+    const hairlut_model_desc desc = {sizeof desc, mixture->lobe_count, lobes, &mixture->desc};
+    hairlut_model *model;
+    if (hairlut_model_create(&desc, NULL, &model, NULL) != HAIRLUT_OK)
+        return;
+    check_model(model);
+    hairlut_free(model);
+}
+
+static void check_message(hairlut_result result, const char *message)
+{
+    if (result != HAIRLUT_OK)
+        REQUIRE(memchr(message, '\0', HAIRLUT_MESSAGE_SIZE) && strncmp(message, "fuzz.exr: ", 10) == 0);
+}
+
+static void read_table(const blob *file, const exr_context_initializer_t *source, const hairlut_allocator *allocator)
+{
+    const int is_azimuth = mentions(file, "direct_phi"), format = mentions(file, "rational quadratic") ? 2 : 1;
+    const hairlut_exr_kind kind = {is_azimuth ? "direct_phi" : "direct_theta", is_azimuth, format, "for the test"};
+    hairlut_exr_table table;
+    char message[HAIRLUT_MESSAGE_SIZE];
+    memset(message, 'x', sizeof message);
+    const hairlut_result result = hairlut_exr_read_table(&kind, "fuzz.exr", source, allocator, &table, message);
+    check_message(result, message);
+    if (result == HAIRLUT_OK)
+        use_table(&table.table, table.azimuth, is_azimuth);
+    hairlut_release(allocator, table.texels);
+}
+
+static void read_mixture(const exr_context_initializer_t *source, const hairlut_allocator *allocator)
+{
+    hairlut_exr_mixture mixture;
+    char message[HAIRLUT_MESSAGE_SIZE];
+    memset(message, 'x', sizeof message);
+    const hairlut_result result = hairlut_exr_read_mixture("fuzz.exr", source, allocator, &mixture, message);
+    check_message(result, message);
+    if (result == HAIRLUT_OK)
+        use_mixture(&mixture);
+    hairlut_release(allocator, mixture.memory);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const hairlut_exr_kind theta = {"direct_theta", "theta_i", 0}, phi = {"direct_phi", "phi", 1};
     blob file = {data, size};
     exr_context_initializer_t source = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    hairlut_allocator allocator;
     source.user_data = &file;
     source.read_fn = blob_read;
     source.size_fn = blob_size;
-    const int is_azimuth = mentions(&file, "direct_phi");
-    hairlut_allocator allocator;
-    hairlut_exr_table table;
-    char message[HAIRLUT_MESSAGE_SIZE];
-    memset(message, 'x', sizeof message);
-    hairlut_choose_allocator(NULL, &allocator, message);
-    const hairlut_result result = hairlut_exr_read_table(is_azimuth ? &phi : &theta, "fuzz.exr", &source, &allocator, &table,
-                                                         message);
-    if (result == HAIRLUT_OK)
-        use(&table, is_azimuth);
+    hairlut_choose_allocator(NULL, &allocator, NULL);
+    if (mentions(&file, "hairlut.lobes"))
+        read_mixture(&source, &allocator);
     else
-        REQUIRE(memchr(message, '\0', sizeof message) && strncmp(message, "fuzz.exr: ", 10) == 0);
-    hairlut_release(&allocator, table.texels);
+        read_table(&file, &source, &allocator);
     return 0;
 }

@@ -8,7 +8,7 @@
 #include "batch.h"
 #include "check.h"
 
-enum { COUNT = 77, WIDTH = 9, WIDEST = 300, HEIGHT = 3 };
+enum { COUNT = 300, WIDTH = 9, WIDEST = 300, HEIGHT = 3 };
 
 /* n directions from a fixed generator, with hard ones among them. */
 static void fill(float *values, size_t n, float low, float high, uint32_t seed)
@@ -22,22 +22,65 @@ static void fill(float *values, size_t n, float low, float high, uint32_t seed)
     }
 }
 
-/* Every kernel that this processor runs, not only the widest. */
-static void check_kernels(const hairlut_model *model, size_t n)
+/* Inputs of arrays: theta_r, phi_r, u_theta, u_phi, offset, u_lobe, then shares. */
+typedef struct arrays {
+    float in[6][COUNT], shares[HAIRLUT_MAX_LOBES * COUNT], out[5][COUNT];
+} arrays;
+
+static void fill_arrays(arrays *a, const hairlut_model *model, size_t n)
 {
-    float in[6][COUNT], out[5][COUNT];
-    const hairlut_samples all = {out[0], out[1], out[2], out[3]}, angles = {out[0], out[1], NULL, NULL};
     for (uint32_t k = 0; k < 6; ++k)
-        fill(in[k], n, k < 2 ? -2.0f : 0.0f, k < 2 ? 2.0f : 1.0f, k + 1);
-    const hairlut_batch *batch;
-    for (int level = 0; (batch = hairlut_batch_level(level)); ++level) {
-        batch->sample_direct(model, n, in[0], in[1], in[2], in[3], all);
-        batch->pdf_direct(model, n, in[0], in[1], out[0], out[1], out[4]);
-        batch->sample_multiple(model, n, in[0], in[1], in[2], in[3], angles);
-        batch->pdf_multiple(model, n, in[0], in[1], out[0], out[1], out[4]);
-        for (size_t i = 0; i < n; ++i)
-            REQUIRE(isfinite(out[2][i]) && isfinite(out[3][i]) && isfinite(out[4][i]));
+        fill(a->in[k], n, k < 2 ? -2.0f : k == 4 ? -1.0f : 0.0f, k < 2 ? 2.0f : 1.0f, k + 1);
+    fill(a->shares, n * (size_t)hairlut_lobe_count(model), -0.2f, 1.0f, 9);
+}
+
+static void require_finite(const arrays *a, size_t n)
+{
+    for (size_t i = 0; i < n; ++i)
+        REQUIRE(isfinite(a->out[2][i]) && isfinite(a->out[3][i]) && isfinite(a->out[4][i]));
+}
+
+/* Every function of a set of kernels. */
+static void check_kernels(const hairlut_batch *batch, const hairlut_model *model, size_t n)
+{
+    static _Thread_local arrays a;
+    float(*in)[COUNT] = a.in, (*out)[COUNT] = a.out;
+    const hairlut_samples all = {out[0], out[1], out[2], out[3]}, angles = {out[0], out[1], NULL, NULL};
+    fill_arrays(&a, model, n);
+    for (int lobe = 0; lobe < hairlut_lobe_count(model); ++lobe) {
+        batch->sample_lobe(model, lobe, n, in[0], in[1], in[2], in[3], lobe % 2 ? angles : all);
+        batch->pdf_lobe(model, lobe, n, in[0], in[1], out[0], out[1], out[4]);
+        require_finite(&a, n);
     }
+    for (int k = 0; k < 4; ++k) {
+        const float *shares = k & 1 ? a.shares : NULL, *offset = k & 2 ? in[4] : NULL;
+        batch->sample_hair(model, n, shares, in[0], in[1], offset, in[5], in[2], in[3], k ? all : angles);
+        batch->pdf_hair(model, n, shares, in[0], in[1], offset, out[0], out[1], out[4]);
+        require_finite(&a, n);
+    }
+}
+
+/* Every kernel that this processor runs, not only the widest, and the public functions. */
+static void check_batches(const hairlut_model *model, size_t n)
+{
+    static const hairlut_batch public_set = {"public", hairlut_sample_lobe_n, hairlut_pdf_lobe_n, hairlut_sample_hair_n, hairlut_pdf_hair_n};
+    static _Thread_local arrays a;
+    const hairlut_samples all = {a.out[0], a.out[1], a.out[2], a.out[3]};
+    const hairlut_batch *batch;
+    check_kernels(&public_set, model, n);
+    for (int level = 0; (batch = hairlut_batch_level(level)); ++level)
+        check_kernels(batch, model, n);
+    fill_arrays(&a, model, n);
+    hairlut_sample_direct_n(model, n, a.in[0], a.in[1], a.in[2], a.in[3], all);
+    hairlut_pdf_direct_n(model, n, a.in[0], a.in[1], a.out[0], a.out[1], a.out[4]);
+    require_finite(&a, n);
+    hairlut_sample_multiple_n(model, n, a.in[0], a.in[1], a.in[2], a.in[3], all);
+    hairlut_pdf_multiple_n(model, n, a.in[0], a.in[1], a.out[0], a.out[1], a.out[4]);
+    require_finite(&a, n);
+    hairlut_sample_lobe_n(model, -1, n, a.in[0], a.in[1], a.in[2], a.in[3], all);
+    hairlut_pdf_lobe_n(model, HAIRLUT_MAX_LOBES, n, a.in[0], a.in[1], a.in[2], a.in[3], a.out[4]);
+    for (size_t i = 0; i < n; ++i)
+        REQUIRE(a.out[2][i] == 0.0f && a.out[4][i] == 0.0f);
 }
 
 /* Their names in a line, for the coverage count. */
@@ -47,49 +90,6 @@ static void print_kernels(void)
     for (int level = 0; hairlut_batch_level(level); ++level)
         printf(" %s", hairlut_batch_level(level)->name);
     putchar('\n');
-}
-
-static void check_batches(const hairlut_model *model, size_t n)
-{
-    float in[6][COUNT], out[5][COUNT];
-    const hairlut_samples all = {out[0], out[1], out[2], out[3]}, angles = {out[0], out[1], NULL, NULL};
-    for (uint32_t k = 0; k < 6; ++k)
-        fill(in[k], n, k < 2 ? -2.0f : 0.0f, k < 2 ? 2.0f : 1.0f, k + 1);
-    hairlut_sample_direct_n(model, n, in[0], in[1], in[2], in[3], all);
-    hairlut_sample_direct_n(model, n, in[0], in[1], in[2], in[3], angles);
-    hairlut_pdf_direct_n(model, n, in[0], in[1], out[0], out[1], out[4]);
-    hairlut_sample_multiple_n(model, n, in[0], in[1], in[2], in[3], all);
-    hairlut_sample_multiple_n(model, n, in[0], in[1], in[2], in[3], angles);
-    hairlut_pdf_multiple_n(model, n, in[0], in[1], out[0], out[1], out[4]);
-    hairlut_sample_mixture_n(model, n, in[5], in[0], in[1], in[4], in[2], in[3], all);
-    hairlut_pdf_mixture_n(model, n, in[5], in[0], in[1], out[0], out[1], out[4]);
-    for (size_t i = 0; i < n; ++i)
-        REQUIRE(isfinite(out[2][i]) && isfinite(out[3][i]) && isfinite(out[4][i]));
-}
-
-/* Lobes of several models, with weights of every kind, the first turned by any angle. */
-static void check_components(float turn)
-{
-    const hairlut_model *a = hairlut_builtin("fitted"), *b = hairlut_builtin("printed");
-    static const float weights[] = {0.0f, 1.0f, -1.0f, 1e-45f, 3e38f, INFINITY, NAN};
-    enum { WEIGHTS = sizeof weights / sizeof *weights };
-    for (int i = 0; i < WEIGHTS; ++i)
-        for (int j = 0; j < WEIGHTS; ++j) {
-            const hairlut_component mixed[] = {{weights[i] > 0.0f ? a : NULL, HAIRLUT_LOBE_DIRECT, weights[i], turn},
-                                               {weights[j] > 0.0f ? b : NULL, HAIRLUT_LOBE_MULTIPLE, weights[j], 0.5f}};
-            const int valid = isfinite(weights[i]) && isfinite(weights[j]) && (weights[i] > 0.0f || weights[j] > 0.0f)
-                              && (isfinite(turn) || !(weights[i] > 0.0f));
-            for (int n = -1; n <= 2; ++n) {
-                static const float u[] = {-1.0f, 0.0f, 0.5f, 1.0f, NAN};
-                for (int k = 0; k < 5; ++k) {
-                    const hairlut_sample s = hairlut_sample_components(mixed, n, 0.3f, 0.5f, u[k], 0.4f, 0.7f);
-                    REQUIRE(isfinite(s.theta_i) && isfinite(s.phi_i) && isfinite(s.pdf_solid_angle));
-                    REQUIRE(n < 2 || (s.pdf_angle > 0.0f) == (valid && u[k] == u[k]));
-                }
-                const float pdf = hairlut_pdf_components(mixed, n, 0.3f, 0.5f, 0.1f, 2.0f);
-                REQUIRE(isfinite(pdf) && (n < 2 || (pdf > 0.0f) == valid));
-            }
-        }
 }
 
 static void check_frame(void)
@@ -106,35 +106,52 @@ static void check_frame(void)
     }
 }
 
+static void check_names(const hairlut_model *model)
+{
+    const int count = hairlut_lobe_count(model);
+    REQUIRE(count >= 1 && count <= HAIRLUT_MAX_LOBES);
+    REQUIRE(!hairlut_lobe_name(model, -1) && !hairlut_lobe_name(model, count));
+    REQUIRE(hairlut_lobe_index(model, NULL) == -1 && hairlut_lobe_index(model, "no such lobe") == -1);
+    for (int lobe = -1; lobe <= count; ++lobe) {
+        int width, height;
+        const int exists = lobe >= 0 && lobe < count;
+        REQUIRE(!exists || hairlut_lobe_index(model, hairlut_lobe_name(model, lobe)) == lobe);
+        hairlut_table_size(model, lobe, HAIRLUT_THETA, &width, &height);
+        REQUIRE(exists ? width >= 4 && height >= 2 : width == 0 && height == 0);
+        hairlut_table_size(model, lobe, HAIRLUT_PHI, &width, &height);
+        REQUIRE(exists || width == 0);
+    }
+}
+
 static void use(const hairlut_model *model)
 {
-    int width, height;
     float u[2];
     check_model(model);
-    for (size_t n = 0; n <= COUNT; n += n < 20 ? 1 : 19)
-        check_batches(model, n), check_kernels(model, n);
-    for (int part = 0; part < 3; ++part) {
-        hairlut_table_size(model, (hairlut_part)part, &width, &height);
-        REQUIRE(width >= 4 && height >= 2);
-    }
-    const hairlut_sample s = hairlut_sample_multiple(model, 0.3f, 0.5f, 0.25f, 0.75f);
-    hairlut_invert_multiple(model, 0.3f, 0.5f, s.theta_i, s.phi_i, u);
+    check_names(model);
+    for (size_t n = 0; n <= 20; ++n)
+        check_batches(model, n);
+    check_batches(model, COUNT);
+    const hairlut_sample s = hairlut_sample_lobe(model, 0, 0.3f, 0.5f, 0.25f, 0.75f);
+    hairlut_invert_lobe(model, 0, 0.3f, 0.5f, s.theta_i, s.phi_i, u);
     REQUIRE(fabsf(u[0] - 0.25f) < 1e-5f && fabsf(u[1] - 0.75f) < 1e-5f);
     REQUIRE(hairlut_pdf_to_solid_angle(s.pdf_angle, s.theta_i) == s.pdf_solid_angle);
     REQUIRE(hairlut_pdf_multiple(model, NAN, 0.5f, s.theta_i, s.phi_i) == 0.0f);
     REQUIRE(hairlut_pdf_direct(model, 0.3f, 0.5f, 4.0f, s.phi_i) == 0.0f);
-    check_direction(model, 0.3f, 0.5f, 0.9f, 0.1f);
+    REQUIRE(isfinite(hairlut_sample_direct(model, 0.3f, 0.5f, 0.1f, 0.2f).theta_i));
+    REQUIRE(isfinite(hairlut_sample_multiple(model, 0.3f, 0.5f, 0.1f, 0.2f).theta_i));
 }
 
-static float texels[2][HEIGHT * WIDEST];
+static float texels[2][2 * HEIGHT * WIDEST];
 
 static hairlut_table straight_of(int azimuth, int width)
 {
     const float low = azimuth ? 0.0f : -1.57079637f, high = azimuth ? 6.28318548f : 1.57079637f;
     const float last = (float)(width - 1);
-    for (int k = 0; k < HEIGHT * width; ++k)
-        texels[azimuth][k] = k % width == width - 1 ? high : low + (high - low) * (float)(k % width) / last;
-    const hairlut_table table = {texels[azimuth], width, HEIGHT, -1.5f, 1.5f, low, high, HAIRLUT_WARP_OCTAVES, 1e-6f, 0.9f};
+    for (int k = 0; k < HEIGHT * width; ++k) {
+        texels[azimuth][2 * k] = k % width == width - 1 ? high : low + (high - low) * (float)(k % width) / last;
+        texels[azimuth][2 * k + 1] = high - low;
+    }
+    const hairlut_table table = {sizeof table, texels[azimuth], width, HEIGHT, -1.5f, 1.5f, low, high, HAIRLUT_WARP_UNIFORM, 1e-6f};
     return table;
 }
 
@@ -156,45 +173,115 @@ static void forget(void *user, void *memory)
     free(memory);
 }
 
+/* Two lobes that share a theta table, the second of uniform azimuth. */
+typedef struct two_lobes {
+    hairlut_table theta, phi;
+    hairlut_lobe_desc lobes[2];
+    hairlut_model_desc desc;
+} two_lobes;
+
+static void describe(two_lobes *two, int width)
+{
+    const hairlut_lobe_desc direct = {sizeof direct, "direct", &two->theta, &two->phi, HAIRLUT_AZIMUTH_SUM};
+    const hairlut_lobe_desc multiple = {sizeof multiple, "multiple", &two->theta, NULL, HAIRLUT_AZIMUTH_SUM};
+    const hairlut_model_desc desc = {sizeof desc, 2, two->lobes, NULL};
+    two->theta = straight_of(0, width);
+    two->phi = straight_of(1, width);
+    two->lobes[0] = direct;
+    two->lobes[1] = multiple;
+    two->desc = desc;
+}
+
+static void create_and_use(const hairlut_model_desc *desc)
+{
+    hairlut_model *model;
+    REQUIRE(hairlut_model_create(desc, NULL, &model, NULL) == HAIRLUT_OK);
+    use(model);
+    hairlut_free(model);
+}
+
 /* The least width, and two that are not searched as small ones are: by two counts of 16, and with a halving between them. */
 static void check_widths(void)
 {
     static const int widths[] = {4, 100, WIDEST};
     for (size_t k = 0; k < sizeof widths / sizeof *widths; ++k) {
-        const hairlut_model_desc desc = {straight_of(0, widths[k]), straight_of(1, widths[k]), straight_of(0, widths[k]),
-                                         HAIRLUT_AZIMUTH_DIFFERENCE};
-        hairlut_model *model;
-        REQUIRE(hairlut_model_create(&desc, NULL, &model, NULL) == HAIRLUT_OK);
-        use(model);
-        hairlut_free(model);
+        two_lobes two;
+        describe(&two, widths[k]);
+        create_and_use(&two.desc);
     }
+}
+
+/* Mixtures of one node, a few, and so many that single samples look for theirs. */
+static void check_mixtures(void)
+{
+    enum { MOST = 80 };
+    static float nodes[MOST], grid[2 * MOST * MOST];
+    for (int k = 0; k < MOST; ++k)
+        nodes[k] = (float)k / MOST;
+    for (int k = 0; k < 2 * MOST * MOST; ++k)
+        grid[k] = k < MOST * MOST ? (float)(k % 7) + 0.5f : (float)(k % 3);
+    static const int sides[][2] = {{1, 1}, {3, 1}, {1, 5}, {4, 3}, {MOST, MOST}};
+    for (size_t k = 0; k < sizeof sides / sizeof *sides; ++k)
+        for (int form = 0; form < 4; ++form) {
+            two_lobes two;
+            describe(&two, WIDTH);
+            const hairlut_mixture_desc mixture = {sizeof mixture, sides[k][0], sides[k][1], nodes, nodes, form ? grid : NULL,
+                                                  form & 1 ? grid : NULL, form >> 1};
+            two.desc.mixture = &mixture;
+            create_and_use(&two.desc);
+        }
+}
+
+static void check_refusals(void)
+{
+    two_lobes two;
+    hairlut_model *model;
+    char message[HAIRLUT_MESSAGE_SIZE];
+    const float pair[2] = {0.0f, 1.0f}, none[4] = {0.0f, 0.0f, 0.0f, 0.0f}, bad[4] = {NAN, NAN, NAN, NAN};
+    const hairlut_mixture_desc sound = {sizeof sound, 2, 1, pair, NULL, NULL, NULL, 0};
+    hairlut_mixture_desc mixture;
+#define REFUSE_MODEL(change, expected)                                                                                \
+    (describe(&two, WIDTH), mixture = sound, two.desc.mixture = &mixture, change,                                     \
+     REQUIRE_RESULT(hairlut_model_create(&two.desc, NULL, &model, message) == (expected) && !model))
+#define REQUIRE_RESULT(condition) ((condition) ? (void)0 : (fprintf(stderr, "%s\n", message), abort()))
+    REFUSE_MODEL(two.desc.size = 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.desc.size += 8, HAIRLUT_ERROR_VERSION);
+    REFUSE_MODEL(two.desc.lobe_count = 0, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.desc.lobes = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.lobes[1].size = 3, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.lobes[1].name = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.lobes[1].name = "No", HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.lobes[1].name = "direct", HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.lobes[0].theta = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.lobes[0].phi = &two.theta, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(two.lobes[0].azimuth = (hairlut_azimuth)7, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(mixture.size = 0, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(mixture.mirrored = 2, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(mixture.theta_r_count = 0, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(mixture.theta_r = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE_MODEL(mixture.theta_r = none, HAIRLUT_ERROR_TABLE);
+    REFUSE_MODEL(mixture.share = none, HAIRLUT_ERROR_TABLE);
+    REFUSE_MODEL(mixture.share = bad, HAIRLUT_ERROR_TABLE);
+    REFUSE_MODEL(mixture.turn = bad, HAIRLUT_ERROR_TABLE);
 }
 
 static void check_creation(void)
 {
-    hairlut_model_desc desc = {straight(0), straight(1), straight(0), HAIRLUT_AZIMUTH_SUM};
+    two_lobes two;
     const hairlut_allocator poor = {never, forget, NULL}, half = {never, NULL, NULL};
     char message[HAIRLUT_MESSAGE_SIZE];
     hairlut_model *model;
-    REQUIRE(hairlut_model_create(&desc, NULL, &model, message) == HAIRLUT_OK);
-    use(model);
-    hairlut_free(model);
-    desc.multiple_theta.warp = HAIRLUT_WARP_UNIFORM;
-    desc.direct_phi.warp = HAIRLUT_WARP_UNIFORM;
-    REQUIRE(hairlut_model_create(&desc, NULL, &model, NULL) == HAIRLUT_OK);
-    use(model);
-    hairlut_free(model);
+    describe(&two, WIDTH);
+    create_and_use(&two.desc);
+    two.theta.warp = HAIRLUT_WARP_OCTAVES;
+    two.phi.warp = HAIRLUT_WARP_OCTAVES;
+    create_and_use(&two.desc);
     hairlut_free(NULL);
-    REQUIRE(hairlut_model_create(&desc, &poor, &model, message) == HAIRLUT_ERROR_MEMORY && !model);
-    REQUIRE(hairlut_model_create(&desc, &half, &model, message) == HAIRLUT_ERROR_ARGUMENT);
+    REQUIRE(hairlut_model_create(&two.desc, &poor, &model, message) == HAIRLUT_ERROR_MEMORY && !model);
+    REQUIRE(hairlut_model_create(&two.desc, &half, &model, message) == HAIRLUT_ERROR_ARGUMENT);
     REQUIRE(hairlut_model_create(NULL, NULL, &model, message) == HAIRLUT_ERROR_ARGUMENT);
-    REQUIRE(hairlut_model_create(&desc, NULL, NULL, message) == HAIRLUT_ERROR_ARGUMENT);
+    REQUIRE(hairlut_model_create(&two.desc, NULL, NULL, message) == HAIRLUT_ERROR_ARGUMENT);
     REQUIRE(hairlut_validate(NULL, message) == HAIRLUT_ERROR_ARGUMENT);
-    desc.azimuth = (hairlut_azimuth)7;
-    REQUIRE(hairlut_model_create(&desc, NULL, &model, message) == HAIRLUT_ERROR_ARGUMENT);
-    desc.azimuth = HAIRLUT_AZIMUTH_SUM;
-    desc.direct_phi = straight(0);
-    REQUIRE(hairlut_model_create(&desc, NULL, &model, message) == HAIRLUT_ERROR_ARGUMENT);
 }
 
 static void refuse(hairlut_table table, hairlut_result expected)
@@ -213,10 +300,11 @@ static void check_validation(void)
     REFUSE(t.theta_r_max = t.theta_r_min, HAIRLUT_ERROR_ARGUMENT);
     REFUSE(t.domain_max = NAN, HAIRLUT_ERROR_ARGUMENT);
     REFUSE(t.warp = (hairlut_warp)9, HAIRLUT_ERROR_ARGUMENT);
-    REFUSE(t.warp_e = 0.0f, HAIRLUT_ERROR_ARGUMENT);
-    REFUSE(t.cell_limit = 1.0f, HAIRLUT_ERROR_ARGUMENT);
-    REFUSE(texels[0][WIDTH + 2] = NAN, HAIRLUT_ERROR_TABLE);
-    REFUSE(texels[0][WIDTH] = -1.5f, HAIRLUT_ERROR_TABLE);
+    REFUSE((t.warp = HAIRLUT_WARP_OCTAVES, t.warp_e = 0.0f), HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(t.size = 0, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(texels[0][2 * (WIDTH + 2)] = NAN, HAIRLUT_ERROR_TABLE);
+    REFUSE(texels[0][2 * WIDTH] = -1.5f, HAIRLUT_ERROR_TABLE);
+    REFUSE(texels[0][2 * WIDTH + 1] = 0.0f, HAIRLUT_ERROR_TABLE);
 }
 
 static void load(const char *directory)
@@ -279,13 +367,13 @@ int main(int argc, char **argv)
         REQUIRE(hairlut_result_string((hairlut_result)k)[0]);
     use(hairlut_builtin("printed"));
     use(hairlut_builtin("fitted"));
+    use(hairlut_builtin("brown"));
     hairlut_free((hairlut_model *)hairlut_builtin("fitted"));
     check_frame();
-    static const float turns[] = {0.0f, -2.0f, 1e6f, -3e38f, INFINITY, NAN};
-    for (size_t k = 0; k < sizeof turns / sizeof *turns; ++k)
-        check_components(turns[k]);
     check_widths();
+    check_mixtures();
     check_creation();
+    check_refusals();
     check_validation();
     check_loader_arguments();
     for (int k = first; k < argc; ++k)

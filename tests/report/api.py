@@ -18,7 +18,8 @@ PAGE = ROOT / "precompute" / "API.md"
 HEAD = """\
 # Python API
 
-Made from the docstrings by `python -m report.api`; a test runs their examples. What is not on this page is not public.
+Made from the docstrings by `python -m report.api`; a test runs their examples. What is not on this page is
+not public.
 """
 MODEL_FILES = "gaussian", "density", "tabulated"
 
@@ -43,7 +44,7 @@ def _documented(item: object, name: str) -> Iterator[str]:
     yield f"### class {name}\n"
     yield _text(item)
     for member, value in vars(item).items():
-        if member.startswith("_") or not isinstance(value, property) and not inspect.isfunction(value):
+        if member.startswith("_") or not (isinstance(value, property) or inspect.isfunction(value)):
             continue
         call = "" if isinstance(value, property) else _signature(value)
         yield f"#### {name}.{member}{call}\n"

@@ -1,7 +1,9 @@
-"""Tables as plain arrays: raw floats with a JSON sidecar, and npz.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Models and tables as plain arrays: raw little-endian 32-bit floats with a JSON sidecar, and npz.
 
-A table <model>/<table>.exr becomes <model>/<table>.f32, its texels row by row as little-endian 32-bit floats,
-with <table>.json beside it; or <table>.npz with the same JSON text in the array "sidecar".
+A model becomes <model>/hair.f32, the stream that the shaders read (stream.py), with hair.json beside it. A
+table <model>/<table>.exr becomes <model>/<table>.f32, its texels (angle, dx/du) row by row, with
+<table>.json; or <table>.npz with the same JSON text in the array "sidecar".
 """
 
 import io
@@ -12,45 +14,75 @@ from pathlib import Path
 import numpy as np
 
 from . import exr
-from .axis import AXIS, axis_numbers
 from .files import write_whole
+from .model import BakedModel
+from .stream import AXIS, HEAD, WIDTH, stream
 from .table import Table
 
 Errors = Mapping[str, float]
 
 
 def sidecar(table: Table, errors: Errors) -> dict:
-    """What the file's header says, and the numbers of the axis in the order that a shader wants them."""
-    numbers = dict(zip(AXIS, axis_numbers(table), strict=True))
+    """What the file's header says, and the size."""
     return {
         "file": f"{table.name}.f32",
-        "type": "float32, little-endian, row by row",
+        "type": "float32, little-endian, (angle, dx/du) row by row",
         "width": table.width,
         "height": table.height,
         "header": exr.attributes(table),
         "errors": dict(errors),
-        "axis": numbers,
-        # hairlut_axis_of in runtime/shaders; the leading 0 is the includer's handle of the table
-        "shader": [0.0, *numbers.values()],
+    }
+
+
+def model_sidecar(model: BakedModel, texels: int) -> dict:
+    """What a shader's host needs to know of a stream of so many texels."""
+    lobes = [
+        {"name": lobe.name, "theta": lobe.theta.name, "phi": lobe.phi and lobe.phi.name}
+        for lobe in model.lobes
+    ]
+    return {
+        "file": "hair.f32",
+        "type": "float32, little-endian, texels of 4",
+        "model": model.name,
+        "texels": texels,
+        "texture": [WIDTH, texels // WIDTH],
+        "head": HEAD + 2 * AXIS * len(lobes),
+        "lobes": lobes,
+        "theta_r": np.asarray(model.mixture.theta_r, float).tolist(),
+        "offset": np.asarray(model.mixture.offset, float).tolist(),
+        "mirrored": bool(model.mixture.mirrored),
+        "errors": {name: dict(errors) for name, errors in model.errors.items()},
     }
 
 
 def write_raw(table: Table, errors: Errors, folder: Path) -> list[Path]:
     """Writes folder/<model>/<table>.f32 and .json; their paths."""
-    base = folder / table.model / table.name
-    text = json.dumps(sidecar(table, errors), indent=1) + "\n"
+    texels = np.stack([table.texels, table.slopes], axis=-1)
+    return _write(folder / table.model / table.name, texels, sidecar(table, errors))
+
+
+def write_stream(model: BakedModel, folder: Path) -> list[Path]:
+    """Writes folder/<model>/hair.f32 and .json; their paths."""
+    texels = stream(model)
+    return _write(folder / model.name / "hair", texels, model_sidecar(model, len(texels)))
+
+
+def _write(base: Path, floats: np.ndarray, description: dict) -> list[Path]:
+    text = json.dumps(description, indent=1) + "\n"
     return [
-        write_whole(base.with_suffix(".f32"), np.ascontiguousarray(table.texels, "<f4").tobytes()),
+        write_whole(base.with_suffix(".f32"), np.ascontiguousarray(floats, "<f4").tobytes()),
         write_whole(base.with_suffix(".json"), text.encode("ascii")),
     ]
 
 
 def write_npz(table: Table, errors: Errors, folder: Path) -> list[Path]:
-    """Writes folder/<model>/<table>.npz: texels, theta_r of the rows, u of the columns, and the sidecar."""
+    """Writes folder/<model>/<table>.npz: texels, slopes, theta_r of the rows, u of the columns, and the
+    sidecar."""
     data = io.BytesIO()
     np.savez(
         data,
         texels=np.ascontiguousarray(table.texels, np.float32),
+        slopes=np.ascontiguousarray(table.slopes, np.float32),
         theta_r=table.theta_r,
         u=table.warp.u(table.width),
         sidecar=np.array(json.dumps(sidecar(table, errors))),

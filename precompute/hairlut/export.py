@@ -1,6 +1,7 @@
 """Models and tables for engines that do not read OpenEXR.
 
-Target "c" is a C source against the public header (csource.py); "raw" and "npz" are plain arrays (arrays.py).
+Target "c" is a C source against the public header (csource.py); "raw" and "npz" are plain arrays (arrays.py),
+of which "raw" also writes a model as the stream that the shaders read.
 There is no KTX2 or DDS: the one maintained writer of float KTX2 for Python, pyktx, needs the native libktx,
 which neither pip nor Debian installs, and none was found for float DDS. A raw file is what those containers
 hold after their header.
@@ -33,8 +34,15 @@ def export_c(directories: Sequence[Path], out: Path) -> Path:
 
 
 def export_raw(paths: Sequence[Path], out: Path) -> Path:
-    """Raw floats with a JSON sidecar for each table."""
-    return _each(paths, out, arrays.write_raw)
+    """Raw floats with a JSON sidecar: each table, and the stream of each directory's model."""
+    models = [exr.read_model(path) for path in paths if path.is_dir()]
+    names = [model.name for model in models]
+    if len(set(names)) < len(names):
+        raise HairlutError(f"models {', '.join(names)}: expected a different name for each directory")
+    _each(paths, out, arrays.write_raw)
+    for model in models:
+        arrays.write_stream(model, out)
+    return out
 
 
 def export_npz(paths: Sequence[Path], out: Path) -> Path:

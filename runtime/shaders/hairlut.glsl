@@ -1,31 +1,15 @@
-/* hairlut for GLSL 4.30 and GLSL ES 3.00: sample, pdf and invert as in hairlut.h, from the same texels.
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* hairlut for GLSL 4.30 and GLSL ES 3.00. Made by source/assemble.py; change source/body.inl.
  *
  *     #version 430                                        // or: #version 300 es
- *     uniform highp sampler2D tables;                     // R32F, filter NEAREST; the three tables, one below another
- *     #define HAIRLUT_FETCH(table, column, row) texelFetch(tables, ivec2(column, (table) + (row)), 0).r
+ *     uniform highp sampler2D hairs;                      // RGBA32F, 1024 wide, filter NEAREST: the file(s) of `export --to raw`
+ *     #define HAIRLUT_FETCH(source, i) texelFetch(hairs, ivec2((i) & 1023, (i) >> 10), 0)
  *     // ... this file, pasted or included ...
- *     uniform vec4 axes[9];                               // three vec4 a table, from `hairlut export --to raw`
+ *     hairlut_model hair = hairlut_model_at(0, 0);        // 0: passed to HAIRLUT_FETCH; 0: the model's first texel
+ *     hairlut_sample s = hairlut_sample_hair(hair, theta_r, phi_r, offset, u_lobe, u_theta, u_phi);
+ *     float q = hairlut_pdf_hair(hair, theta_r, phi_r, offset, theta_i, phi_i);
  *
- *     hairlut_model hair = hairlut_model(hairlut_axis_of(axes[0], axes[1], axes[2]),     // direct_theta
- *                                        hairlut_axis_of(axes[3], axes[4], axes[5]),     // direct_phi
- *                                        hairlut_axis_of(axes[6], axes[7], axes[8]),     // multiple_theta
- *                                        HAIRLUT_AZIMUTH_DIFFERENCE);                    // printed: _SUM
- *     hairlut_sample s = hairlut_sample_direct(hair, theta_r, phi_r, u_theta, u_phi);
- *
- * HAIRLUT_FETCH(table, column, row) is the includer's: it returns the texel of one table, from a texture or a buffer. The
- * integer `table` is passed through from hairlut_axis_of and may mean what the includer likes: a first row, a layer, an
- * index. It is never called outside 0 <= column < columns, 0 <= row < height. Never let the texture unit filter: its 8-bit
- * weights move an angle by up to 0.003 rad, and the density would not be the density of what was sampled.
- *
- * Cost: a sample or density fetches eight texels (four in each of two rows) on each axis; density and invert find their
- * cell first, by two fetches for each halving of the row.
- *
- * The rules of hairlut.h hold for every function: no finite input gives NaN or infinity; u and theta_r are clamped; NaN in
- * any argument, or an infinite azimuth, gives density 0 and finite angles inside their ranges. NaN is told by its bits,
- * since a shader compiler may assume that x == x.
- *
- * Keep the axes in uniforms or buffers. As compile-time constants they invite a compiler to reorder (1 - u) + e, which
- * costs the upper tail its precision where `precise` (GLSL 4.00) is missing. */
+ * README.md has the rest: bindings, fetches, limits. */
 #ifndef HAIRLUT_GLSL
 #define HAIRLUT_GLSL
 
@@ -36,119 +20,241 @@ precision highp int;
 #else
 #define HAIRLUT_PRECISE precise
 #endif
+#ifndef HAIRLUT_LOBE_LIMIT
+#define HAIRLUT_LOBE_LIMIT 16
+#endif
+#ifndef HAIRLUT_HEADER
+#define HAIRLUT_HEADER(source, i) HAIRLUT_FETCH(source, i)
+#endif
+#define HAIRLUT_SOURCE int
+#define HAIRLUT_FN
+#define HAIRLUT_CONST const
+#define hairlut_float4 vec4
+#define hairlut_bits floatBitsToUint
+#define hairlut_from_bits uintBitsToFloat
 
-#define HAIRLUT_WARP_UNIFORM 0
-#define HAIRLUT_WARP_OCTAVES 1
-#define HAIRLUT_AZIMUTH_DIFFERENCE 0
-#define HAIRLUT_AZIMUTH_SUM 1
+HAIRLUT_CONST int hairlut_max_lobes = HAIRLUT_LOBE_LIMIT;
 
-/* One table and the numbers to read it by. */
-struct hairlut_axis {
-    int table;        // passed to HAIRLUT_FETCH
-    int columns;      // >= 4
-    int height;       // >= 2
-    int warp;
-    float row_origin; // theta_r of row 0
-    float row_scale;  // rows per radian of theta_r
-    float low;        // the domain, rad
-    float high;
-    float e;          // octaves: F(m + e) = f0 + k c, m = min(u, 1-u), c the folded column
-    float f0;
-    float k;          // uniform warp: m = k c
-    float limit;      // of a cell's curvature, relative to its width
-    float inverse_k;
+HAIRLUT_CONST int hairlut_uniform = 0; // azimuths: see hairlut_axis
+HAIRLUT_CONST int hairlut_difference = 1;
+HAIRLUT_CONST int hairlut_sum = 2;
+
+/* One hair in the stream of texels that `hairlut export --to raw` writes. */
+struct hairlut_model {
+    HAIRLUT_SOURCE source; // passed to HAIRLUT_FETCH and HAIRLUT_HEADER
+    int first;             // the texel at which the model begins
+    int lobes;
+    int values;            // the first texel of the mixture's shares and turns
+    bool mirrored;         // nodes of the offset are >= 0, and -h mirrors h
 };
 
-struct hairlut_model {
-    hairlut_axis direct_theta;
-    hairlut_axis direct_phi;
-    hairlut_axis multiple_theta;
-    int azimuth; // what direct_phi holds: HAIRLUT_AZIMUTH_DIFFERENCE or _SUM of phi_i and phi_r
+/* The lobes' shares and turns at one theta_r and offset. Shares are in any unit: replace them by your own where a shader knows
+ * better. A negative one counts as 0; with one that is infinite or NaN the density is 0. */
+struct hairlut_mixture {
+    float share[hairlut_max_lobes];
+    float turn[hairlut_max_lobes]; // rad
+    float side;                    // -1: azimuths are mirrored
+    bool known;                    // neither theta_r nor the offset was NaN
 };
 
 struct hairlut_sample {
-    float theta_i;         // [-pi/2, pi/2]
-    float phi_i;           // [-pi, pi)
+    float theta_i;         // rad, [-pi/2, pi/2]
+    float phi_i;           // rad, [-pi, pi)
     float pdf_angle;       // per rad^2
     float pdf_solid_angle; // per sr
 };
 
-/* The axis that twelve numbers describe: (table, columns, height, warp), (row_origin, row_scale, low, high),
- * (e, f0, k, limit). */
-hairlut_axis hairlut_axis_of(vec4 shape, vec4 range, vec4 warp)
-{
-    return hairlut_axis(int(shape.x), int(shape.y), int(shape.z), int(shape.w), range.x, range.y, range.z, range.w,
-                        warp.x, warp.y, warp.z, warp.w, 1.0 / warp.z);
-}
+/* The two numbers from which a lobe's direction is drawn, in [0,1]. */
+struct hairlut_numbers {
+    float u_theta;
+    float u_phi;
+};
+
+/* One table and the numbers to read it by. */
+struct hairlut_axis {
+    HAIRLUT_SOURCE source;
+    int first;        // the table's first texel
+    int columns;      // knots of a row
+    int height;       // rows
+    int tree;         // texels of a row's search tree
+    float row_origin; // theta_r of row 0
+    float row_scale;  // rows per radian of theta_r
+    float low;        // the domain, rad
+    float high;
+    float e;          // knots are evenly spaced in F(m + e), m = min(u, 1-u); 0: in m itself
+    float scale;      // column = F(m + e) * scale - origin
+    float origin;
+    int azimuth;      // what a lobe's second table holds: nothing (the azimuth is uniform), phi_i - phi_r or phi_i + phi_r
+};
+
+struct hairlut_lobe {
+    hairlut_axis theta;
+    hairlut_axis phi;
+};
 
 /* ---- numbers -------------------------------------------------------------------------------------------------- */
 
-const float hairlut_two_pi = 6.28318548;
-const float hairlut_pi = 3.14159274;
-const float hairlut_inverse_two_pi = 0.159154943; // also the density of a uniform azimuth
-const float hairlut_huge = 1e30;                   // stands for infinity; a row position of it stays finite
+HAIRLUT_CONST float hairlut_two_pi = 6.28318548f;
+HAIRLUT_CONST float hairlut_pi = 3.14159274f;
+HAIRLUT_CONST float hairlut_inverse_two_pi = 0.159154943f; // also the density of a uniform azimuth
+HAIRLUT_CONST float hairlut_huge = 1e30f;                  // stands for infinity; what is computed from it stays finite
 
-bool hairlut_is_nan(float x)
+HAIRLUT_FN bool hairlut_is_nan(float x)
 {
-    return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u;
+    return (hairlut_bits(x) & 0x7fffffffu) > 0x7f800000u;
 }
 
-bool hairlut_is_finite(float x)
+HAIRLUT_FN bool hairlut_is_finite(float x)
 {
-    return (floatBitsToUint(x) & 0x7fffffffu) < 0x7f800000u;
+    return (hairlut_bits(x) & 0x7fffffffu) < 0x7f800000u;
 }
 
 /* x without the values that arithmetic need not honour: NaN becomes `unknown`, infinity a large number. */
-float hairlut_tame(float x, float unknown)
+HAIRLUT_FN float hairlut_bounded(float x, float unknown)
 {
-    return hairlut_is_nan(x) ? unknown : clamp(x, -hairlut_huge, hairlut_huge);
+    float number = clamp(x, -hairlut_huge, hairlut_huge);
+    return hairlut_is_nan(x) ? unknown : number;
 }
 
 /* phi modulo 2 pi, from [low, low + 2 pi). 2 pi is subtracted in two parts, of which the first multiplies without
  * rounding. What no float resolves gives low. */
-float hairlut_wrap(float phi, float low)
+HAIRLUT_FN float hairlut_wrap(float phi, float low)
 {
-    if (!hairlut_is_finite(phi))
+    if (!hairlut_is_finite(phi)) {
         return low;
+    }
     float n = floor((phi - low) * hairlut_inverse_two_pi);
-    HAIRLUT_PRECISE float r = (phi - n * 6.28125) - n * 1.93530718e-3;
+    HAIRLUT_PRECISE float r = (phi - n * 6.28125f) - n * 1.93530718e-3f;
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 
-/* cos(theta) for |theta| <= pi/2 as the sine of the distance z from the pole. The last term is what the float pi/2 lacks:
- * added at the end, no compiler can fold it into the first subtraction. */
-float hairlut_cos(float theta)
+/* cos(theta) for |theta| <= pi/2 as the sine of the distance z from the pole, by the polynomial of the C library. The last term is
+ * what the float pi/2 lacks: added at the end, no compiler can fold it into the first subtraction. */
+HAIRLUT_FN float hairlut_cos(float theta)
 {
-    float z = max(1.57079637 - abs(theta), 0.0);
+    float z = max(1.57079637f - abs(theta), 0.0f);
     float w = z * z;
-    float series = 1.0 + w * (-1.0 / 6.0 + w * (1.0 / 120.0 + w * (-1.0 / 5040.0 + w * (1.0 / 362880.0
-                       + w * (-1.0 / 39916800.0)))));
-    return max(z * series - 4.37113883e-8, 4.37113883e-8);
+    float series = -0.166666567f + w * (0.0083330255f + w * (-0.000198074194f + w * 2.60190313e-6f));
+    return max(z + z * w * series - 4.37113883e-8f, 4.37113883e-8f);
 }
 
-float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)
+/* asin(h) for |h| <= 1, by the polynomial of the C library: r + r^3 Q(r^2) for r up to 1/2, and beyond pi/2 - 2 asin(r) with
+ * r = sqrt((1 - |h|) / 2). */
+HAIRLUT_FN float hairlut_asin(float h)
+{
+    float a = abs(h);
+    float z = a > 0.5f ? 0.5f * (1.0f - a) : a * a;
+    float r = a > 0.5f ? sqrt(z) : a;
+    float series = 0.166667536f + z * (0.0749524161f + z * (0.045477096f + z * (0.0241476111f + z * 0.0422185473f)));
+    float y = r + r * z * series;
+    float angle = a > 0.5f ? 1.57079637f - 2.0f * y : y;
+    return h < 0.0f ? -angle : angle;
+}
+
+HAIRLUT_FN float hairlut_pdf_to_solid_angle(float pdf_angle, float theta_i)
 {
     return pdf_angle / hairlut_cos(theta_i);
 }
 
+/* Both weights are positive: what is blended from positive numbers is positive, at every t. */
+HAIRLUT_FN float hairlut_blend(float a, float b, float t)
+{
+    HAIRLUT_PRECISE float x = (1.0f - t) * a + t * b;
+    return x;
+}
+
+/* ---- the stream ----------------------------------------------------------------------------------------------- */
+
+/* The model whose first texel is `first`. */
+HAIRLUT_FN hairlut_model hairlut_model_at(HAIRLUT_SOURCE source, int first)
+{
+    hairlut_float4 head = HAIRLUT_HEADER(source, first);
+    hairlut_model model;
+    model.source = source;
+    model.first = first;
+    model.lobes = min(int(head.x), hairlut_max_lobes);
+    model.mirrored = head.y > 0.5f;
+    model.values = first + int(head.z);
+    return model;
+}
+
+/* A table whose three texels of numbers begin at `at`. */
+HAIRLUT_FN hairlut_axis hairlut_axis_at(HAIRLUT_SOURCE source, int model, int at)
+{
+    hairlut_float4 shape = HAIRLUT_HEADER(source, at);
+    hairlut_float4 range = HAIRLUT_HEADER(source, at + 1);
+    hairlut_float4 warp = HAIRLUT_HEADER(source, at + 2);
+    hairlut_axis axis;
+    axis.source = source;
+    axis.first = model + int(shape.x);
+    axis.columns = int(shape.y);
+    axis.height = int(shape.z);
+    axis.tree = int(shape.w);
+    axis.row_origin = range.x;
+    axis.row_scale = range.y;
+    axis.low = range.z;
+    axis.high = range.w;
+    axis.e = warp.x;
+    axis.scale = warp.y;
+    axis.origin = warp.z;
+    axis.azimuth = int(warp.w);
+    return axis;
+}
+
+HAIRLUT_FN hairlut_lobe hairlut_lobe_at(hairlut_model model, int k)
+{
+    int at = model.first + 3 + 6 * k;
+    hairlut_lobe lobe;
+    lobe.theta = hairlut_axis_at(model.source, model.first, at);
+    lobe.phi = hairlut_axis_at(model.source, model.first, at + 3);
+    return lobe;
+}
+
+/* How many keys of a tree are at most x. A texel has two keys of a row and the same two of the row above, and three texels
+ * below it; all leaves are at one depth. */
+HAIRLUT_FN int hairlut_search(HAIRLUT_SOURCE source, int first, int tree, float t, float x)
+{
+    int node = 0;
+    while (node < tree) {
+        hairlut_float4 keys = HAIRLUT_FETCH(source, first + node);
+        int branch = hairlut_blend(keys.x, keys.z, t) <= x ? 1 : 0;
+        branch += hairlut_blend(keys.y, keys.w, t) <= x ? 1 : 0;
+        node = 3 * node + 1 + branch;
+    }
+    return node - tree;
+}
+
 /* ---- one axis: the reading of a table ------------------------------------------------------------------------- */
 
-/* The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
- * x(f) = x0 + f (d + c (1-f)) and dx/df = d + c (1-2f), where d is the cell's width and c its curvature, taken from the
- * widths of both neighbours. u runs evenly with f, over the cell's width h in u: the density is h / |dx/df|. All is counted
- * from the nearer end of the u axis, where m = min(u, 1-u); seen from the high end, d is negative. */
+/* A cell is a monotone rational quadratic (Gregory and Delbourgo 1982). Between two knots, h apart in u and w in x, with the
+ * slopes e0 and e1 at the knots in units of the cell's own, e = (h/w) dx/du, the fraction f of h, and g = 1 - f,
+ *
+ *     G = f^2 + g^2 + (e0 + e1) f g,   x = x0 + w (f^2 + e0 f g) / G,
+ *     N = e1 f^2 + 2 f g + e0 g^2,     density = du/dx = (h/w) G^2 / N,
+ *
+ * and back from X = (x - x0) / w, with Z = 1 - X, B = e0 Z - e1 X and R = sqrt(B^2 + 4 X Z), without cancellation:
+ *
+ *     f : g = 2 X : R + B where B >= 0, else R - B : 2 Z,   density = (h/w) G / R.
+ *
+ * x0, w, h dx/du at both knots are what texels hold; those of two neighbouring rows are blended linearly in theta_r. All is
+ * counted from the nearer end of the u axis, where m = min(u, 1-u); seen from the high end, w is negative. */
 
 struct hairlut_rows {
-    int row;  // below theta_r
-    float t;  // weight of the row above, in [0,1]
+    int row; // below theta_r
+    float t; // weight of the row above, in [0,1]
 };
 
 struct hairlut_cell {
-    float x0, d, c; // in x
-    float m0, h;    // nearer knot and width in u
+    float x0; // the nearer knot, rad
+    float w;
+    float e0;
+    float e1;
+    float m0; // the nearer knot's m
+    float inverse_h;
+    float h;
 };
 
-/* A place on the u axis: m = min(u, 1-u), and its cell, counted from the low or the high end. */
+/* A place on the u axis: m, and its cell, counted from the low or the high end. */
 struct hairlut_knot {
     int i;
     bool high;
@@ -160,282 +266,377 @@ struct hairlut_draw {
     float pdf;
 };
 
-hairlut_rows hairlut_axis_rows(hairlut_axis axis, float theta_r)
+HAIRLUT_FN hairlut_rows hairlut_axis_rows(hairlut_axis axis, float theta_r)
 {
-    float r = clamp((hairlut_tame(theta_r, axis.row_origin) - axis.row_origin) * axis.row_scale, 0.0,
-                    float(axis.height - 1));
-    int row = min(int(r), axis.height - 2);
-    return hairlut_rows(row, r - float(row));
-}
-
-float hairlut_blend(float a, float b, float t)
-{
-    HAIRLUT_PRECISE float x = a + t * (b - a);
-    return x;
-}
-
-/* The same for the parts of a cell: a width is positive for positive a and b at every t, which it is not by the form above where
- * b is far below a. */
-float hairlut_blend_part(float a, float b, float t)
-{
-    HAIRLUT_PRECISE float x = (1.0 - t) * a + t * b;
-    return x;
-}
-
-/* The blended texel of knot i. */
-float hairlut_texel(hairlut_axis axis, hairlut_rows rows, int i)
-{
-    float a = HAIRLUT_FETCH(axis.table, i, rows.row);
-    float b = HAIRLUT_FETCH(axis.table, i, rows.row + 1);
-    return hairlut_blend(a, b, rows.t);
+    float angle = hairlut_bounded(theta_r, axis.row_origin);
+    float r = clamp((angle - axis.row_origin) * axis.row_scale, 0.0f, float(axis.height - 1));
+    hairlut_rows rows;
+    rows.row = min(int(r), axis.height - 2);
+    rows.t = r - float(rows.row);
+    return rows;
 }
 
 /* The curve F of octaves: near a fourth root, a straight line in each octave of s. */
-float hairlut_curve(float s)
+HAIRLUT_FN float hairlut_curve(float s)
 {
-    return uintBitsToFloat((floatBitsToUint(s) >> 2) + 0x30000000u);
-}
-
-/* s of y = F(s) */
-float hairlut_curve_back(float y)
-{
-    return uintBitsToFloat((floatBitsToUint(y) - 0x30000000u) << 2);
-}
-
-/* The distance in u of knot n, counted from an end, from that end. */
-float hairlut_axis_tail(hairlut_axis axis, int n)
-{
-    int mirrored = axis.columns - 1 - n;
-    HAIRLUT_PRECISE float y = axis.f0 + axis.k * float(min(n, mirrored));
-    HAIRLUT_PRECISE float m = axis.warp == HAIRLUT_WARP_OCTAVES ? hairlut_curve_back(y) - axis.e : y;
-    m = n == 0 ? 0.0 : m;
-    return n > mirrored ? 1.0 - m : m;
-}
-
-/* Texel n of a row, counted from the low or the high end. */
-float hairlut_row_texel(hairlut_axis axis, int row, int n, bool high)
-{
-    return HAIRLUT_FETCH(axis.table, high ? axis.columns - 1 - n : n, row);
-}
-
-/* dx/du at the knot between two cells, from their widths in x and in u: the density there is that of both, blended in x. */
-float hairlut_knot_slope(float d0, float d1, float h0, float h1)
-{
-    return (d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1);
-}
-
-/* (nearer end, width, curvature) of cell i of one row. h: the widths in u of the cell before, the cell, and the one behind it,
- * which there always is, as a cell is counted from the nearer end. */
-vec3 hairlut_row_cell(hairlut_axis axis, int row, int i, bool high, vec3 h)
-{
-    float x0 = hairlut_row_texel(axis, row, i, high);
-    float x1 = hairlut_row_texel(axis, row, i + 1, high);
-    float d = x1 - x0;
-    float before = x0 - hairlut_row_texel(axis, row, max(i - 1, 0), high);
-    float after = hairlut_row_texel(axis, row, i + 2, high) - x1;
-    float c;
-    if (i == 0)
-        c = d - h.y * after / h.z;
-    else
-        c = 0.5 * h.y * (hairlut_knot_slope(before, d, h.x, h.y) - hairlut_knot_slope(d, after, h.y, h.z));
-    float bound = axis.limit * abs(d);
-    return vec3(x0, d, clamp(c, -bound, bound));
-}
-
-/* Cell i, counted from the low or the high end. Each row's cell is taken before they are blended: neighbouring texels subtract
- * without rounding. */
-hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, int i, bool high)
-{
-    float m0 = hairlut_axis_tail(axis, i);
-    float m1 = hairlut_axis_tail(axis, i + 1);
-    vec3 h = vec3(m0 - hairlut_axis_tail(axis, max(i - 1, 0)), m1 - m0, hairlut_axis_tail(axis, i + 2) - m1);
-    vec3 a = hairlut_row_cell(axis, rows.row, i, high, h);
-    vec3 b = hairlut_row_cell(axis, rows.row + 1, i, high, h);
-    return hairlut_cell(hairlut_blend_part(a.x, b.x, rows.t), hairlut_blend_part(a.y, b.y, rows.t),
-                        hairlut_blend_part(a.z, b.z, rows.t), m0, h.y);
+    return hairlut_from_bits((hairlut_bits(s) >> 2u) + 0x30000000u);
 }
 
 /* u to cell. The fold at u = 1/2 keeps the relative precision of both tails. */
-hairlut_knot hairlut_axis_knot(hairlut_axis axis, float number)
+HAIRLUT_FN hairlut_knot hairlut_axis_knot(hairlut_axis axis, float number)
 {
-    float u = clamp(hairlut_tame(number, 0.0), 0.0, 1.0);
-    HAIRLUT_PRECISE float m = u <= 0.5 ? u : 1.0 - u;
-    HAIRLUT_PRECISE float sum = m + axis.e;
-    float y = axis.warp == HAIRLUT_WARP_OCTAVES ? hairlut_curve(sum) : m;
-    HAIRLUT_PRECISE float c = y * axis.inverse_k - axis.f0 * axis.inverse_k; // rounded as in C, for the same cell beside a knot
-    return hairlut_knot(min(int(max(c, 0.0)), (axis.columns - 1) / 2), u > 0.5, m);
+    float u = clamp(hairlut_bounded(number, 0.0f), 0.0f, 1.0f);
+    hairlut_knot knot;
+    knot.high = u > 0.5f;
+    HAIRLUT_PRECISE float folded = 1.0f - u;
+    knot.m = min(u, folded);
+    HAIRLUT_PRECISE float sum = knot.m + axis.e;
+    float y = axis.e > 0.0f ? hairlut_curve(sum) : knot.m;
+    HAIRLUT_PRECISE float column = y * axis.scale - axis.origin; // rounded as in C, for the same cell beside a knot
+    knot.i = clamp(int(column), 0, axis.columns / 2 - 1);
+    return knot;
+}
+
+/* Cell i, counted from the low or the high end. */
+HAIRLUT_FN hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, int i, bool high)
+{
+    int half_count = axis.columns / 2;
+    int column = high ? half_count + i : i;
+    int at = axis.first + half_count + column * axis.height + rows.row;
+    hairlut_float4 below = HAIRLUT_FETCH(axis.source, at);
+    hairlut_float4 above = HAIRLUT_FETCH(axis.source, at + 1);
+    hairlut_float4 knot = HAIRLUT_FETCH(axis.source, axis.first + i);
+    hairlut_cell cell;
+    cell.x0 = hairlut_blend(below.x, above.x, rows.t);
+    cell.w = hairlut_blend(below.y, above.y, rows.t);
+    cell.e0 = hairlut_blend(below.z, above.z, rows.t) / cell.w;
+    cell.e1 = hairlut_blend(below.w, above.w, rows.t) / cell.w;
+    cell.m0 = knot.x;
+    cell.inverse_h = knot.y;
+    cell.h = knot.z;
+    return cell;
 }
 
 /* The cell whose blended texels enclose x. */
-int hairlut_axis_find(hairlut_axis axis, hairlut_rows rows, float x)
+HAIRLUT_FN hairlut_cell hairlut_axis_cell_around(hairlut_axis axis, hairlut_rows rows, float x)
 {
-    int i = 0;
-    for (int n = axis.columns - 1; n > 1;) {
-        int half_n = n / 2;
-        i += hairlut_texel(axis, rows, i + half_n) <= x ? half_n : 0;
-        n -= half_n;
-    }
-    return i;
+    int half_count = axis.columns / 2;
+    int trees = axis.first + half_count + 2 * half_count * axis.height;
+    int n = hairlut_search(axis.source, trees + rows.row * axis.tree, axis.tree, rows.t, x);
+    bool high = n >= half_count;
+    int i = high ? axis.columns - 2 - n : n;
+    return hairlut_axis_cell(axis, rows, i, high);
 }
 
-/* (fraction of a cell at which x lies, |dx/df| there). The root of the quadratic is that slope, written as the slope at the
- * cell's flatter end and the distance from there, which cancels nothing. */
-vec2 hairlut_cell_solve(hairlut_cell cell, float x)
+HAIRLUT_FN float hairlut_cell_g(hairlut_cell cell, float f, float g)
 {
-    bool falls = cell.d < 0.0;
-    float d = abs(cell.d);
-    float c = falls ? -cell.c : cell.c;
-    float along = clamp(falls ? cell.x0 - x : x - cell.x0, 0.0, d);
-    float flat_slope = d - abs(c);
-    float away = c > 0.0 ? d - along : along;
-    float slope = sqrt(flat_slope * flat_slope + 4.0 * abs(c) * away);
-    return vec2(min(2.0 * along / (d + c + slope), 1.0), slope);
+    return f * f + g * g + (cell.e0 + cell.e1) * (f * g);
 }
 
-hairlut_draw hairlut_axis_sample(hairlut_axis axis, float theta_r, float u)
+HAIRLUT_FN hairlut_draw hairlut_axis_sample(hairlut_axis axis, float theta_r, float u)
 {
     hairlut_knot knot = hairlut_axis_knot(axis, u);
     hairlut_cell cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i, knot.high);
-    float f = (knot.m - cell.m0) / cell.h;
-    float x = cell.x0 + f * (cell.d + cell.c * (1.0 - f));
-    float slope = abs(cell.d + cell.c * (1.0 - 2.0 * f));
-    return hairlut_draw(clamp(x, axis.low, axis.high), cell.h / slope);
+    float f = clamp((knot.m - cell.m0) * cell.inverse_h, 0.0f, 1.0f);
+    float g = 1.0f - f;
+    float G = hairlut_cell_g(cell, f, g);
+    float N = cell.e1 * (f * f) + 2.0f * (f * g) + cell.e0 * (g * g);
+    hairlut_draw draw;
+    draw.x = clamp(cell.x0 + cell.w * ((f * f + cell.e0 * (f * g)) / G), axis.low, axis.high);
+    draw.pdf = cell.h / abs(cell.w) * (G * G / N);
+    return draw;
 }
 
-/* Cell n of a row, counted from the low end, as seen from the nearer end. */
-hairlut_cell hairlut_axis_found(hairlut_axis axis, hairlut_rows rows, int n)
+/* Where x lies in a cell: f, g, and R of above. */
+struct hairlut_root {
+    float f;
+    float g;
+    float r;
+};
+
+HAIRLUT_FN hairlut_root hairlut_cell_solve(hairlut_cell cell, float x)
 {
-    bool high = n >= axis.columns / 2;
-    return hairlut_axis_cell(axis, rows, high ? axis.columns - 2 - n : n, high);
+    float X = clamp((x - cell.x0) / cell.w, 0.0f, 1.0f);
+    float Z = 1.0f - X;
+    float B = cell.e0 * Z - cell.e1 * X;
+    float R = sqrt(B * B + 4.0f * (X * Z));
+    float a = B >= 0.0f ? 2.0f * X : R - B;
+    float b = B >= 0.0f ? R + B : 2.0f * Z;
+    hairlut_root root;
+    root.f = a / (a + b);
+    root.g = b / (a + b);
+    root.r = R;
+    return root;
 }
 
 /* Density per rad of hairlut_axis_sample at x; 0 outside the domain and for NaN. */
-float hairlut_axis_pdf(hairlut_axis axis, float theta_r, float x)
+HAIRLUT_FN float hairlut_axis_pdf(hairlut_axis axis, float theta_r, float x)
 {
-    if (hairlut_is_nan(x) || x < axis.low || x > axis.high)
-        return 0.0;
-    hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
-    hairlut_cell cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
-    return cell.h / hairlut_cell_solve(cell, x).y;
+    if (hairlut_is_nan(x) || x < axis.low || x > axis.high) {
+        return 0.0f;
+    }
+    hairlut_cell cell = hairlut_axis_cell_around(axis, hairlut_axis_rows(axis, theta_r), x);
+    hairlut_root root = hairlut_cell_solve(cell, x);
+    return cell.h / abs(cell.w) * (hairlut_cell_g(cell, root.f, root.g) / root.r);
 }
 
 /* The u that hairlut_axis_sample turns into x; outside the domain the nearer end's, 0 for NaN. */
-float hairlut_axis_invert(hairlut_axis axis, float theta_r, float number)
+HAIRLUT_FN float hairlut_axis_invert(hairlut_axis axis, float theta_r, float number)
 {
-    float x = hairlut_tame(number, axis.low);
-    hairlut_rows rows = hairlut_axis_rows(axis, theta_r);
-    hairlut_cell cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
-    float m = clamp(cell.m0 + cell.h * hairlut_cell_solve(cell, x).x, 0.0, 1.0);
-    return cell.d < 0.0 ? 1.0 - m : m;
+    float x = clamp(hairlut_bounded(number, axis.low), axis.low, axis.high);
+    hairlut_cell cell = hairlut_axis_cell_around(axis, hairlut_axis_rows(axis, theta_r), x);
+    float m = clamp(cell.m0 + cell.h * hairlut_cell_solve(cell, x).f, 0.0f, 1.0f);
+    return cell.w < 0.0f ? 1.0f - m : m;
 }
 
-/* ---- the two lobes -------------------------------------------------------------------------------------------- */
+/* ---- one lobe ------------------------------------------------------------------------------------------------- */
 
 /* NaN anywhere, or an infinite azimuth: the density is 0. */
-bool hairlut_known(float theta_r, float phi_r, float a, float b)
+HAIRLUT_FN bool hairlut_known(float theta_r, float phi_r, float a, float b)
 {
     return !hairlut_is_nan(theta_r) && hairlut_is_finite(phi_r) && !hairlut_is_nan(a) && !hairlut_is_nan(b);
 }
 
-/* The azimuth that the table direct_phi holds, in [0, 2 pi). */
-float hairlut_relative_azimuth(hairlut_model model, float phi_r, float phi_i)
+/* The azimuth that a table holds before mirror and turn, in [-2 pi, 2 pi]: phi_i - phi_r or phi_i + phi_r. */
+HAIRLUT_FN float hairlut_relative_azimuth(hairlut_axis phi, float phi_r, float phi_i)
 {
     float r = hairlut_wrap(phi_r, -hairlut_pi);
     float i = hairlut_wrap(phi_i, -hairlut_pi);
-    return hairlut_wrap(model.azimuth == HAIRLUT_AZIMUTH_SUM ? i + r : i - r, 0.0);
+    return phi.azimuth == hairlut_sum ? i + r : i - r;
 }
 
-/* phi_i in [-pi, pi) from the azimuth in the table. */
-float hairlut_incident_azimuth(hairlut_model model, float phi_r, float phi)
+/* phi_i in [-pi, pi) from such an azimuth. */
+HAIRLUT_FN float hairlut_incident_azimuth(hairlut_axis phi, float phi_r, float relative)
 {
     float r = hairlut_wrap(phi_r, -hairlut_pi);
-    return hairlut_wrap(model.azimuth == HAIRLUT_AZIMUTH_SUM ? phi - r : phi + r, -hairlut_pi);
+    float phi_i = phi.azimuth == hairlut_sum ? relative - r : relative + r;
+    return hairlut_wrap(phi_i, -hairlut_pi);
 }
 
-hairlut_sample hairlut_finish(float theta_i, float phi_i, float pdf)
+HAIRLUT_FN hairlut_sample hairlut_finish(float theta_i, float phi_i, float pdf)
 {
-    return hairlut_sample(theta_i, phi_i, pdf, hairlut_pdf_to_solid_angle(pdf, theta_i));
+    hairlut_sample s;
+    s.theta_i = theta_i;
+    s.phi_i = phi_i;
+    s.pdf_angle = pdf;
+    s.pdf_solid_angle = hairlut_pdf_to_solid_angle(pdf, theta_i);
+    return s;
 }
 
-/* Draws an incident direction for the viewer direction (theta_r, phi_r) from two numbers in [0,1). */
-hairlut_sample hairlut_sample_direct(hairlut_model model, float theta_r, float phi_r, float u_theta, float u_phi)
+/* A lobe's draw, mirrored by side = -1 and turned around the fibre. A uniform azimuth ignores both. */
+HAIRLUT_FN hairlut_sample hairlut_lobe_sample(hairlut_lobe lobe, float side, float turn, float theta_r, float phi_r,
+                                              float u_theta, float u_phi)
 {
-    hairlut_draw theta = hairlut_axis_sample(model.direct_theta, theta_r, u_theta);
-    hairlut_draw phi = hairlut_axis_sample(model.direct_phi, theta_r, u_phi);
-    float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * phi.pdf : 0.0;
-    return hairlut_finish(theta.x, hairlut_incident_azimuth(model, phi_r, phi.x), pdf);
+    hairlut_draw theta = hairlut_axis_sample(lobe.theta, theta_r, u_theta);
+    float phi_i = hairlut_two_pi * clamp(hairlut_bounded(u_phi, 0.0f), 0.0f, 1.0f) - hairlut_pi;
+    float pdf = hairlut_inverse_two_pi;
+    if (lobe.phi.azimuth == hairlut_uniform) {
+        phi_i = phi_i < hairlut_pi ? phi_i : -hairlut_pi;
+    } else {
+        hairlut_draw phi = hairlut_axis_sample(lobe.phi, theta_r, u_phi);
+        phi_i = hairlut_incident_azimuth(lobe.phi, phi_r, side * (phi.x + turn));
+        pdf = phi.pdf;
+    }
+    float known = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * pdf : 0.0f;
+    return hairlut_finish(theta.x, phi_i, known);
 }
 
-hairlut_sample hairlut_sample_multiple(hairlut_model model, float theta_r, float phi_r, float u_theta, float u_phi)
+HAIRLUT_FN float hairlut_lobe_pdf(hairlut_lobe lobe, float side, float turn, float theta_r, float phi_r, float theta_i,
+                                  float phi_i)
 {
-    hairlut_draw theta = hairlut_axis_sample(model.multiple_theta, theta_r, u_theta);
-    float u = clamp(hairlut_tame(u_phi, 0.0), 0.0, 1.0);
-    float phi = hairlut_two_pi * u - hairlut_pi;
-    float pdf = hairlut_known(theta_r, phi_r, u_theta, u_phi) ? theta.pdf * hairlut_inverse_two_pi : 0.0;
-    return hairlut_finish(theta.x, phi < hairlut_pi ? phi : -hairlut_pi, pdf);
+    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i)) {
+        return 0.0f;
+    }
+    float pdf = hairlut_axis_pdf(lobe.theta, theta_r, theta_i);
+    if (lobe.phi.azimuth == hairlut_uniform) {
+        return pdf * hairlut_inverse_two_pi;
+    }
+    float phi = hairlut_wrap(side * hairlut_relative_azimuth(lobe.phi, phi_r, phi_i) - turn, 0.0f);
+    return pdf * hairlut_axis_pdf(lobe.phi, theta_r, phi);
+}
+
+HAIRLUT_FN bool hairlut_has_lobe(hairlut_model model, int lobe)
+{
+    return lobe >= 0 && lobe < model.lobes;
+}
+
+/* Draws an incident direction from one lobe, without a turn, for the viewer direction (theta_r, phi_r) and two numbers in
+ * [0,1). A lobe that the model does not have: density 0, angles 0. */
+HAIRLUT_FN hairlut_sample hairlut_sample_lobe(hairlut_model model, int lobe, float theta_r, float phi_r, float u_theta,
+                                              float u_phi)
+{
+    if (!hairlut_has_lobe(model, lobe)) {
+        return hairlut_finish(0.0f, 0.0f, 0.0f);
+    }
+    return hairlut_lobe_sample(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, u_theta, u_phi);
 }
 
 /* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
-float hairlut_pdf_direct(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
+HAIRLUT_FN float hairlut_pdf_lobe(hairlut_model model, int lobe, float theta_r, float phi_r, float theta_i, float phi_i)
 {
-    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
-        return 0.0;
-    float phi = hairlut_relative_azimuth(model, phi_r, phi_i);
-    return hairlut_axis_pdf(model.direct_theta, theta_r, theta_i) * hairlut_axis_pdf(model.direct_phi, theta_r, phi);
-}
-
-float hairlut_pdf_multiple(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
-{
-    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
-        return 0.0;
-    return hairlut_axis_pdf(model.multiple_theta, theta_r, theta_i) * hairlut_inverse_two_pi;
-}
-
-/* The numbers (u_theta, u_phi) from which the sampling function draws (theta_i, phi_i). Directions outside the domain give
- * the nearer end's u; NaN gives 0. */
-vec2 hairlut_invert_direct(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
-{
-    float phi = hairlut_is_nan(phi_i) ? 0.0 : hairlut_relative_azimuth(model, phi_r, phi_i);
-    return vec2(hairlut_axis_invert(model.direct_theta, theta_r, theta_i),
-                hairlut_axis_invert(model.direct_phi, theta_r, phi));
-}
-
-vec2 hairlut_invert_multiple(hairlut_model model, float theta_r, float phi_r, float theta_i, float phi_i)
-{
-    return vec2(hairlut_axis_invert(model.multiple_theta, theta_r, theta_i),
-                (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_inverse_two_pi);
-}
-
-/* ---- both lobes at once --------------------------------------------------------------------------------------- */
-
-float hairlut_pdf_mixture(hairlut_model model, float direct_weight, float theta_r, float phi_r, float theta_i, float phi_i)
-{
-    if (hairlut_is_nan(direct_weight))
-        return 0.0;
-    float w = clamp(hairlut_tame(direct_weight, 0.0), 0.0, 1.0);
-    return w * hairlut_pdf_direct(model, theta_r, phi_r, theta_i, phi_i)
-           + (1.0 - w) * hairlut_pdf_multiple(model, theta_r, phi_r, theta_i, phi_i);
-}
-
-/* With probability direct_weight, clamped to [0,1], draws from the direct lobe (u_lobe < direct_weight), else from the
- * multiple lobe. The densities returned are the mixture's: direct_weight * direct + (1 - direct_weight) * multiple. */
-hairlut_sample hairlut_sample_mixture(hairlut_model model, float direct_weight, float theta_r, float phi_r, float u_lobe,
-                                      float u_theta, float u_phi)
-{
-    float w = clamp(hairlut_tame(direct_weight, 0.0), 0.0, 1.0);
-    hairlut_sample s;
-    float direct, multiple;
-    if (!hairlut_is_nan(u_lobe) && u_lobe < w) {
-        s = hairlut_sample_direct(model, theta_r, phi_r, u_theta, u_phi);
-        direct = s.pdf_angle;
-        multiple = hairlut_pdf_multiple(model, theta_r, phi_r, s.theta_i, s.phi_i);
-    } else {
-        s = hairlut_sample_multiple(model, theta_r, phi_r, u_theta, u_phi);
-        multiple = s.pdf_angle;
-        direct = hairlut_pdf_direct(model, theta_r, phi_r, s.theta_i, s.phi_i);
+    if (!hairlut_has_lobe(model, lobe)) {
+        return 0.0f;
     }
-    bool known = !hairlut_is_nan(direct_weight) && !hairlut_is_nan(u_lobe) && hairlut_known(theta_r, phi_r, u_theta, u_phi);
-    return hairlut_finish(s.theta_i, s.phi_i, known ? w * direct + (1.0 - w) * multiple : 0.0);
+    return hairlut_lobe_pdf(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, theta_i, phi_i);
+}
+
+/* The numbers from which hairlut_sample_lobe draws (theta_i, phi_i). Directions outside the domain give the nearer end's u;
+ * NaN, or a lobe that the model does not have, gives 0. */
+HAIRLUT_FN hairlut_numbers hairlut_invert_lobe(hairlut_model model, int lobe, float theta_r, float phi_r, float theta_i,
+                                               float phi_i)
+{
+    hairlut_numbers numbers;
+    numbers.u_theta = 0.0f;
+    numbers.u_phi = 0.0f;
+    if (!hairlut_has_lobe(model, lobe)) {
+        return numbers;
+    }
+    hairlut_lobe axes = hairlut_lobe_at(model, lobe);
+    numbers.u_theta = hairlut_axis_invert(axes.theta, theta_r, theta_i);
+    if (axes.phi.azimuth == hairlut_uniform) {
+        numbers.u_phi = (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_inverse_two_pi;
+        return numbers;
+    }
+    float relative = hairlut_is_nan(phi_i) ? 0.0f : hairlut_relative_azimuth(axes.phi, phi_r, phi_i);
+    numbers.u_phi = hairlut_axis_invert(axes.phi, theta_r, hairlut_wrap(relative, 0.0f));
+    return numbers;
+}
+
+/* ---- the mixture ---------------------------------------------------------------------------------------------- */
+
+/* A place between two nodes: the gap, and how far along it, in [0,1]. */
+struct hairlut_place {
+    int gap;
+    int gaps;
+    float t;
+};
+
+/* Where x lies among the nodes that header texel `at` describes: (first texel, number of nodes, texels of the search tree).
+ * There is a texel (node, 1 / gap) for each gap, then the tree of the inner nodes. A single node has one gap, of no width. */
+HAIRLUT_FN hairlut_place hairlut_place_of(hairlut_model model, int at, float x)
+{
+    hairlut_float4 nodes = HAIRLUT_HEADER(model.source, at);
+    int first = model.first + int(nodes.x);
+    hairlut_place place;
+    place.gaps = max(int(nodes.y) - 1, 1);
+    place.gap = hairlut_search(model.source, first + place.gaps, int(nodes.z), 0.0f, x);
+    hairlut_float4 node = HAIRLUT_FETCH(model.source, first + place.gap);
+    place.t = clamp((x - node.x) * node.y, 0.0f, 1.0f);
+    return place;
+}
+
+/* Shares and turns at theta_r and the offset h in [-1,1] at which the fibre is hit: linear in theta_r and in asin(h). A turn goes
+ * along the shorter arc, in theta_r first. */
+HAIRLUT_FN hairlut_mixture hairlut_mixture_at(hairlut_model model, float theta_r, float offset)
+{
+    float h = clamp(hairlut_bounded(offset, -1.0f), -1.0f, 1.0f);
+    float side = model.mirrored && h < 0.0f ? -1.0f : 1.0f;
+    hairlut_place row = hairlut_place_of(model, model.first + 1, hairlut_bounded(theta_r, -hairlut_huge));
+    hairlut_place column = hairlut_place_of(model, model.first + 2, hairlut_asin(side * h));
+    int values = model.values + 2 * model.lobes * (row.gap * column.gaps + column.gap);
+    hairlut_mixture mixture;
+    mixture.side = side;
+    mixture.known = !hairlut_is_nan(theta_r) && !hairlut_is_nan(offset);
+    for (int k = 0; k < model.lobes; ++k) {
+        hairlut_float4 share = HAIRLUT_FETCH(model.source, values + 2 * k);    // (low offset: row, row above; high offset: the same)
+        hairlut_float4 turn = HAIRLUT_FETCH(model.source, values + 2 * k + 1); // (low offset: row, arc to the row above; high ...)
+        float share_low = hairlut_blend(share.x, share.y, row.t);
+        float share_high = hairlut_blend(share.z, share.w, row.t);
+        float turn_low = turn.x + row.t * turn.y;
+        float turn_high = turn.z + row.t * turn.w;
+        mixture.share[k] = hairlut_blend(share_low, share_high, column.t);
+        mixture.turn[k] = turn_low + column.t * hairlut_wrap(turn_high - turn_low, -hairlut_pi);
+    }
+    return mixture;
+}
+
+/* A share, 0 in place of a negative one, and so far from the largest float that a sum is finite and its reciprocal is not 0. */
+HAIRLUT_FN float hairlut_share(hairlut_mixture mixture, int k)
+{
+    return clamp(mixture.share[k], 0.0f, 1e36f);
+}
+
+/* The sum of the shares; 0 where one is infinite or NaN. */
+HAIRLUT_FN float hairlut_total_share(hairlut_model model, hairlut_mixture mixture)
+{
+    float total = 0.0f;
+    bool known = true;
+    for (int k = 0; k < model.lobes; ++k) {
+        known = known && hairlut_is_finite(mixture.share[k]);
+        total += hairlut_share(mixture, k);
+    }
+    return known ? total : 0.0f;
+}
+
+/* The density of the mixture at (theta_i, phi_i); total is the sum of its shares. Lobe `drawn`, if there is one, has the
+ * density that is given. */
+HAIRLUT_FN float hairlut_mixture_pdf(hairlut_model model, hairlut_mixture mixture, float total, float theta_r, float phi_r,
+                                     float theta_i, float phi_i, int drawn, float given)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < model.lobes; ++k) {
+        float weight = hairlut_share(mixture, k) / total;
+        if (weight > 0.0f) {
+            float pdf = given;
+            if (k != drawn) {
+                pdf = hairlut_lobe_pdf(hairlut_lobe_at(model, k), mixture.side, mixture.turn[k], theta_r, phi_r, theta_i, phi_i);
+            }
+            sum += weight * pdf;
+        }
+    }
+    return sum;
+}
+
+/* ---- the whole hair ------------------------------------------------------------------------------------------- */
+
+/* Draws an incident direction for the viewer direction (theta_r, phi_r) from three numbers in [0,1): u_lobe chooses the lobe.
+ * The densities are those of the whole mixture. */
+HAIRLUT_FN hairlut_sample hairlut_sample_hair_at(hairlut_model model, hairlut_mixture mixture, float theta_r, float phi_r,
+                                                 float u_lobe, float u_theta, float u_phi)
+{
+    float total = hairlut_total_share(model, mixture);
+    float wanted = clamp(hairlut_bounded(u_lobe, 0.0f), 0.0f, 1.0f) * total;
+    int drawn = 0;
+    float turn = mixture.turn[0];
+    float below = 0.0f;
+    for (int k = 0; k < model.lobes; ++k) {
+        float share = hairlut_share(mixture, k);
+        if (share > 0.0f && below <= wanted) {
+            drawn = k;
+            turn = mixture.turn[k];
+        }
+        below += share;
+    }
+    hairlut_sample s = hairlut_lobe_sample(hairlut_lobe_at(model, drawn), mixture.side, turn, theta_r, phi_r, u_theta, u_phi);
+    bool known = mixture.known && !hairlut_is_nan(u_lobe) && hairlut_known(theta_r, phi_r, u_theta, u_phi);
+    if (!known || !(total > 0.0f)) {
+        return hairlut_finish(s.theta_i, s.phi_i, 0.0f);
+    }
+    float pdf = hairlut_mixture_pdf(model, mixture, total, theta_r, phi_r, s.theta_i, s.phi_i, drawn, s.pdf_angle);
+    return hairlut_finish(s.theta_i, s.phi_i, pdf);
+}
+
+/* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
+HAIRLUT_FN float hairlut_pdf_hair_at(hairlut_model model, hairlut_mixture mixture, float theta_r, float phi_r, float theta_i,
+                                     float phi_i)
+{
+    float total = hairlut_total_share(model, mixture);
+    if (!mixture.known || !(total > 0.0f)) {
+        return 0.0f;
+    }
+    return hairlut_mixture_pdf(model, mixture, total, theta_r, phi_r, theta_i, phi_i, -1, 0.0f);
+}
+
+/* The same with the model's own shares. Where a shader calls both, take the mixture once and call the two above. */
+HAIRLUT_FN hairlut_sample hairlut_sample_hair(hairlut_model model, float theta_r, float phi_r, float offset, float u_lobe,
+                                              float u_theta, float u_phi)
+{
+    return hairlut_sample_hair_at(model, hairlut_mixture_at(model, theta_r, offset), theta_r, phi_r, u_lobe, u_theta, u_phi);
+}
+
+HAIRLUT_FN float hairlut_pdf_hair(hairlut_model model, float theta_r, float phi_r, float offset, float theta_i, float phi_i)
+{
+    return hairlut_pdf_hair_at(model, hairlut_mixture_at(model, theta_r, offset), theta_r, phi_r, theta_i, phi_i);
 }
 
 #endif

@@ -1,97 +1,107 @@
-/* hairlut for WGSL: sample, pdf and invert as in hairlut.h, from the same texels.
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* hairlut for WGSL. Made by source/assemble.py; change source/body.inl.
  *
- *     @group(0) @binding(0) var tables: texture_2d<f32>;  // r32float (unfilterable); the three tables, one below another
- *     @group(0) @binding(1) var<uniform> axes: array<vec4f, 9>;   // three vec4f a table, from `hairlut export --to raw`
+ *     @group(0) @binding(0) var<storage, read> hairs: array<vec4f>;   // the file(s) of `hairlut export --to raw`
  *
- *     fn hairlut_fetch(table: i32, column: i32, row: i32) -> f32 {
- *         return textureLoad(tables, vec2i(column, table + row), 0).r;
+ *     fn hairlut_fetch(source: i32, i: i32) -> vec4f {
+ *         return hairs[i];
+ *     }
+ *     fn hairlut_header(source: i32, i: i32) -> vec4f {   // may read the head of a model from a uniform buffer
+ *         return hairs[i];
  *     }
  *     // ... this file ...
- *     let hair = hairlut_model(hairlut_axis_of(axes[0], axes[1], axes[2]),      // direct_theta
- *                              hairlut_axis_of(axes[3], axes[4], axes[5]),      // direct_phi
- *                              hairlut_axis_of(axes[6], axes[7], axes[8]),      // multiple_theta
- *                              hairlut_azimuth_difference);                     // printed: _sum
- *     let s = hairlut_sample_direct(hair, theta_r, phi_r, u_theta, u_phi);
+ *     let hair = hairlut_model_at(0, 0);                  // 0: passed to hairlut_fetch; 0: the model's first texel
+ *     let s = hairlut_sample_hair(hair, theta_r, phi_r, offset, u_lobe, u_theta, u_phi);
+ *     let q = hairlut_pdf_hair(hair, theta_r, phi_r, offset, theta_i, phi_i);
  *
- * hairlut_fetch(table, column, row) is the module's own: it returns the texel of one table, from a texture or a buffer.
- * The integer `table` is passed through from hairlut_axis_of and may mean what the module likes: a first row, a layer, an
- * index. It is never called outside 0 <= column < columns, 0 <= row < height. Never let the texture unit filter: its 8-bit
- * weights move an angle by up to 0.003 rad, and the density would not be the density of what was sampled.
- *
- * Cost: a sample or density fetches eight texels (four in each of two rows) on each axis; density and invert find their
- * cell first, by two fetches for each halving of the row.
- *
- * The rules of hairlut.h hold for every function: no finite input gives NaN or infinity; u and theta_r are clamped; NaN in
- * any argument, or an infinite azimuth, gives density 0 and finite angles inside their ranges. NaN is told by its bits,
- * since WGSL lets an implementation assume that there is none.
- *
- * Keep the axes in uniforms or buffers. As constants they invite a compiler to reorder (1 - u) + e, which costs the upper
- * tail its precision; WGSL has no way to forbid it. */
+ * README.md has the rest: bindings, fetches, limits. */
 
-const hairlut_warp_uniform: i32 = 0;
-const hairlut_warp_octaves: i32 = 1;
-const hairlut_azimuth_difference: i32 = 0;
-const hairlut_azimuth_sum: i32 = 1;
+const hairlut_max_lobes: i32 = 16;
 
-/* One table and the numbers to read it by. */
-struct hairlut_axis {
-    table: i32,      // passed to hairlut_fetch
-    columns: i32,    // >= 4
-    height: i32,     // >= 2
-    warp: i32,
-    row_origin: f32, // theta_r of row 0
-    row_scale: f32,  // rows per radian of theta_r
-    low: f32,        // the domain, rad
-    high: f32,
-    e: f32,          // octaves: F(m + e) = f0 + k c, m = min(u, 1-u), c the folded column
-    f0: f32,
-    k: f32,          // uniform warp: m = k c
-    limit: f32,      // of a cell's curvature, relative to its width
-    inverse_k: f32,
+fn hairlut_bits(x: f32) -> u32 {
+    return bitcast<u32>(x);
 }
 
+fn hairlut_from_bits(bits: u32) -> f32 {
+    return bitcast<f32>(bits);
+}
+
+const hairlut_uniform: i32 = 0; // azimuths: see hairlut_axis
+const hairlut_difference: i32 = 1;
+const hairlut_sum: i32 = 2;
+
+/* One hair in the stream of texels that `hairlut export --to raw` writes. */
 struct hairlut_model {
-    direct_theta: hairlut_axis,
-    direct_phi: hairlut_axis,
-    multiple_theta: hairlut_axis,
-    azimuth: i32, // what direct_phi holds: hairlut_azimuth_difference or _sum of phi_i and phi_r
+    source: i32,    // passed to hairlut_fetch and hairlut_header
+    first: i32,     // the texel at which the model begins
+    lobes: i32,
+    values: i32,    // the first texel of the mixture's shares and turns
+    mirrored: bool, // nodes of the offset are >= 0, and -h mirrors h
+}
+
+/* The lobes' shares and turns at one theta_r and offset. Shares are in any unit: replace them by your own where a shader knows
+ * better. A negative one counts as 0; with one that is infinite or NaN the density is 0. */
+struct hairlut_mixture {
+    share: array<f32, hairlut_max_lobes>,
+    turn: array<f32, hairlut_max_lobes>, // rad
+    side: f32,                           // -1: azimuths are mirrored
+    known: bool,                         // neither theta_r nor the offset was NaN
 }
 
 struct hairlut_sample {
-    theta_i: f32,         // [-pi/2, pi/2]
-    phi_i: f32,           // [-pi, pi)
+    theta_i: f32,         // rad, [-pi/2, pi/2]
+    phi_i: f32,           // rad, [-pi, pi)
     pdf_angle: f32,       // per rad^2
     pdf_solid_angle: f32, // per sr
 }
 
-/* The axis that twelve numbers describe: (table, columns, height, warp), (row_origin, row_scale, low, high),
- * (e, f0, k, limit). */
-fn hairlut_axis_of(shape: vec4f, range: vec4f, warp: vec4f) -> hairlut_axis {
-    return hairlut_axis(i32(shape.x), i32(shape.y), i32(shape.z), i32(shape.w), range.x, range.y, range.z, range.w,
-                        warp.x, warp.y, warp.z, warp.w, 1.0 / warp.z);
+/* The two numbers from which a lobe's direction is drawn, in [0,1]. */
+struct hairlut_numbers {
+    u_theta: f32,
+    u_phi: f32,
+}
+
+/* One table and the numbers to read it by. */
+struct hairlut_axis {
+    source: i32,
+    first: i32,      // the table's first texel
+    columns: i32,    // knots of a row
+    height: i32,     // rows
+    tree: i32,       // texels of a row's search tree
+    row_origin: f32, // theta_r of row 0
+    row_scale: f32,  // rows per radian of theta_r
+    low: f32,        // the domain, rad
+    high: f32,
+    e: f32,          // knots are evenly spaced in F(m + e), m = min(u, 1-u); 0: in m itself
+    scale: f32,      // column = F(m + e) * scale - origin
+    origin: f32,
+    azimuth: i32,    // what a lobe's second table holds: nothing (the azimuth is uniform), phi_i - phi_r or phi_i + phi_r
+}
+
+struct hairlut_lobe {
+    theta: hairlut_axis,
+    phi: hairlut_axis,
 }
 
 /* ---- numbers -------------------------------------------------------------------------------------------------- */
 
-const hairlut_two_pi: f32 = 6.28318548;
-const hairlut_pi: f32 = 3.14159274;
-const hairlut_inverse_two_pi: f32 = 0.159154943; // also the density of a uniform azimuth
-const hairlut_huge: f32 = 1e30;                   // stands for infinity; a row position of it stays finite
+const hairlut_two_pi: f32 = 6.28318548f;
+const hairlut_pi: f32 = 3.14159274f;
+const hairlut_inverse_two_pi: f32 = 0.159154943f; // also the density of a uniform azimuth
+const hairlut_huge: f32 = 1e30f;                  // stands for infinity; what is computed from it stays finite
 
 fn hairlut_is_nan(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u;
+    return (hairlut_bits(x) & 0x7fffffffu) > 0x7f800000u;
 }
 
 fn hairlut_is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7fffffffu) < 0x7f800000u;
+    return (hairlut_bits(x) & 0x7fffffffu) < 0x7f800000u;
 }
 
 /* x without the values that arithmetic need not honour: NaN becomes `unknown`, infinity a large number. */
-fn hairlut_tame(x: f32, unknown: f32) -> f32 {
-    if (hairlut_is_nan(x)) {
-        return unknown;
-    }
-    return clamp(x, -hairlut_huge, hairlut_huge);
+fn hairlut_bounded(x: f32, unknown: f32) -> f32 {
+    let number = clamp(x, -hairlut_huge, hairlut_huge);
+    return select(number, unknown, hairlut_is_nan(x));
 }
 
 /* phi modulo 2 pi, from [low, low + 2 pi). 2 pi is subtracted in two parts, of which the first multiplies without
@@ -101,30 +111,112 @@ fn hairlut_wrap(phi: f32, low: f32) -> f32 {
         return low;
     }
     let n = floor((phi - low) * hairlut_inverse_two_pi);
-    let r = (phi - n * 6.28125) - n * 1.93530718e-3;
+    let r = (phi - n * 6.28125f) - n * 1.93530718e-3f;
     return select(low, r, r >= low && r < low + hairlut_two_pi);
 }
 
-/* cos(theta) for |theta| <= pi/2 as the sine of the distance z from the pole. The last term is what the float pi/2 lacks:
- * added at the end, no compiler can fold it into the first subtraction. */
+/* cos(theta) for |theta| <= pi/2 as the sine of the distance z from the pole, by the polynomial of the C library. The last term is
+ * what the float pi/2 lacks: added at the end, no compiler can fold it into the first subtraction. */
 fn hairlut_cos(theta: f32) -> f32 {
-    let z = max(1.57079637 - abs(theta), 0.0);
+    let z = max(1.57079637f - abs(theta), 0.0f);
     let w = z * z;
-    let series = 1.0 + w * (-1.0 / 6.0 + w * (1.0 / 120.0 + w * (-1.0 / 5040.0 + w * (1.0 / 362880.0
-                     + w * (-1.0 / 39916800.0)))));
-    return max(z * series - 4.37113883e-8, 4.37113883e-8);
+    let series = -0.166666567f + w * (0.0083330255f + w * (-0.000198074194f + w * 2.60190313e-6f));
+    return max(z + z * w * series - 4.37113883e-8f, 4.37113883e-8f);
+}
+
+/* asin(h) for |h| <= 1, by the polynomial of the C library: r + r^3 Q(r^2) for r up to 1/2, and beyond pi/2 - 2 asin(r) with
+ * r = sqrt((1 - |h|) / 2). */
+fn hairlut_asin(h: f32) -> f32 {
+    let a = abs(h);
+    let z = select(a * a, 0.5f * (1.0f - a), a > 0.5f);
+    let r = select(a, sqrt(z), a > 0.5f);
+    let series = 0.166667536f + z * (0.0749524161f + z * (0.045477096f + z * (0.0241476111f + z * 0.0422185473f)));
+    let y = r + r * z * series;
+    let angle = select(y, 1.57079637f - 2.0f * y, a > 0.5f);
+    return select(angle, -angle, h < 0.0f);
 }
 
 fn hairlut_pdf_to_solid_angle(pdf_angle: f32, theta_i: f32) -> f32 {
     return pdf_angle / hairlut_cos(theta_i);
 }
 
+/* Both weights are positive: what is blended from positive numbers is positive, at every t. */
+fn hairlut_blend(a: f32, b: f32, t: f32) -> f32 {
+    let x = (1.0f - t) * a + t * b;
+    return x;
+}
+
+/* ---- the stream ----------------------------------------------------------------------------------------------- */
+
+/* The model whose first texel is `first`. */
+fn hairlut_model_at(source: i32, first: i32) -> hairlut_model {
+    let head = hairlut_header(source, first);
+    var model: hairlut_model;
+    model.source = source;
+    model.first = first;
+    model.lobes = min(i32(head.x), hairlut_max_lobes);
+    model.mirrored = head.y > 0.5f;
+    model.values = first + i32(head.z);
+    return model;
+}
+
+/* A table whose three texels of numbers begin at `at`. */
+fn hairlut_axis_at(source: i32, model: i32, at: i32) -> hairlut_axis {
+    let shape = hairlut_header(source, at);
+    let range = hairlut_header(source, at + 1);
+    let warp = hairlut_header(source, at + 2);
+    var axis: hairlut_axis;
+    axis.source = source;
+    axis.first = model + i32(shape.x);
+    axis.columns = i32(shape.y);
+    axis.height = i32(shape.z);
+    axis.tree = i32(shape.w);
+    axis.row_origin = range.x;
+    axis.row_scale = range.y;
+    axis.low = range.z;
+    axis.high = range.w;
+    axis.e = warp.x;
+    axis.scale = warp.y;
+    axis.origin = warp.z;
+    axis.azimuth = i32(warp.w);
+    return axis;
+}
+
+fn hairlut_lobe_at(model: hairlut_model, k: i32) -> hairlut_lobe {
+    let at = model.first + 3 + 6 * k;
+    var lobe: hairlut_lobe;
+    lobe.theta = hairlut_axis_at(model.source, model.first, at);
+    lobe.phi = hairlut_axis_at(model.source, model.first, at + 3);
+    return lobe;
+}
+
+/* How many keys of a tree are at most x. A texel has two keys of a row and the same two of the row above, and three texels
+ * below it; all leaves are at one depth. */
+fn hairlut_search(source: i32, first: i32, tree: i32, t: f32, x: f32) -> i32 {
+    var node = 0;
+    while (node < tree) {
+        let keys = hairlut_fetch(source, first + node);
+        var branch = select(0, 1, hairlut_blend(keys.x, keys.z, t) <= x);
+        branch += select(0, 1, hairlut_blend(keys.y, keys.w, t) <= x);
+        node = 3 * node + 1 + branch;
+    }
+    return node - tree;
+}
+
 /* ---- one axis: the reading of a table ------------------------------------------------------------------------- */
 
-/* The cells of two neighbouring rows are blended linearly in theta_r. Within a blended cell, with f in [0,1] its fraction,
- * x(f) = x0 + f (d + c (1-f)) and dx/df = d + c (1-2f), where d is the cell's width and c its curvature, taken from the
- * widths of both neighbours. u runs evenly with f, over the cell's width h in u: the density is h / |dx/df|. All is counted
- * from the nearer end of the u axis, where m = min(u, 1-u); seen from the high end, d is negative. */
+/* A cell is a monotone rational quadratic (Gregory and Delbourgo 1982). Between two knots, h apart in u and w in x, with the
+ * slopes e0 and e1 at the knots in units of the cell's own, e = (h/w) dx/du, the fraction f of h, and g = 1 - f,
+ *
+ *     G = f^2 + g^2 + (e0 + e1) f g,   x = x0 + w (f^2 + e0 f g) / G,
+ *     N = e1 f^2 + 2 f g + e0 g^2,     density = du/dx = (h/w) G^2 / N,
+ *
+ * and back from X = (x - x0) / w, with Z = 1 - X, B = e0 Z - e1 X and R = sqrt(B^2 + 4 X Z), without cancellation:
+ *
+ *     f : g = 2 X : R + B where B >= 0, else R - B : 2 Z,   density = (h/w) G / R.
+ *
+ * x0, w, h dx/du at both knots are what texels hold; those of two neighbouring rows are blended linearly in theta_r. All is
+ * counted from the nearer end of the u axis, where m = min(u, 1-u); seen from the high end, w is negative. */
 
 struct hairlut_rows {
     row: i32, // below theta_r
@@ -132,14 +224,16 @@ struct hairlut_rows {
 }
 
 struct hairlut_cell {
-    x0: f32, // in x
-    d: f32,
-    c: f32,
-    m0: f32, // nearer knot and width in u
+    x0: f32, // the nearer knot, rad
+    w: f32,
+    e0: f32,
+    e1: f32,
+    m0: f32, // the nearer knot's m
+    inverse_h: f32,
     h: f32,
 }
 
-/* A place on the u axis: m = min(u, 1-u), and its cell, counted from the low or the high end. */
+/* A place on the u axis: m, and its cell, counted from the low or the high end. */
 struct hairlut_knot {
     i: i32,
     high: bool,
@@ -152,260 +246,343 @@ struct hairlut_draw {
 }
 
 fn hairlut_axis_rows(axis: hairlut_axis, theta_r: f32) -> hairlut_rows {
-    let r = clamp((hairlut_tame(theta_r, axis.row_origin) - axis.row_origin) * axis.row_scale, 0.0,
-                  f32(axis.height - 1));
-    let row = min(i32(r), axis.height - 2);
-    return hairlut_rows(row, r - f32(row));
-}
-
-fn hairlut_blend(a: f32, b: f32, t: f32) -> f32 {
-    return a + t * (b - a);
-}
-
-/* The same for the parts of a cell: a width is positive for positive a and b at every t, which it is not by the form above where
- * b is far below a. */
-fn hairlut_blend_part(a: f32, b: f32, t: f32) -> f32 {
-    return (1.0 - t) * a + t * b;
-}
-
-/* The blended texel of knot i. */
-fn hairlut_texel(axis: hairlut_axis, rows: hairlut_rows, i: i32) -> f32 {
-    let a = hairlut_fetch(axis.table, i, rows.row);
-    let b = hairlut_fetch(axis.table, i, rows.row + 1);
-    return hairlut_blend(a, b, rows.t);
+    let angle = hairlut_bounded(theta_r, axis.row_origin);
+    let r = clamp((angle - axis.row_origin) * axis.row_scale, 0.0f, f32(axis.height - 1));
+    var rows: hairlut_rows;
+    rows.row = min(i32(r), axis.height - 2);
+    rows.t = r - f32(rows.row);
+    return rows;
 }
 
 /* The curve F of octaves: near a fourth root, a straight line in each octave of s. */
 fn hairlut_curve(s: f32) -> f32 {
-    return bitcast<f32>((bitcast<u32>(s) >> 2u) + 0x30000000u);
-}
-
-/* s of y = F(s) */
-fn hairlut_curve_back(y: f32) -> f32 {
-    return bitcast<f32>((bitcast<u32>(y) - 0x30000000u) << 2u);
-}
-
-/* The distance in u of knot n, counted from an end, from that end. */
-fn hairlut_axis_tail(axis: hairlut_axis, n: i32) -> f32 {
-    let mirrored = axis.columns - 1 - n;
-    var m = axis.f0 + axis.k * f32(min(n, mirrored));
-    if (axis.warp == hairlut_warp_octaves) {
-        m = hairlut_curve_back(m) - axis.e;
-    }
-    m = select(m, 0.0, n == 0);
-    return select(m, 1.0 - m, n > mirrored);
-}
-
-/* Texel n of a row, counted from the low or the high end. */
-fn hairlut_row_texel(axis: hairlut_axis, row: i32, n: i32, high: bool) -> f32 {
-    return hairlut_fetch(axis.table, select(n, axis.columns - 1 - n, high), row);
-}
-
-/* dx/du at the knot between two cells, from their widths in x and in u: the density there is that of both, blended in x. */
-fn hairlut_knot_slope(d0: f32, d1: f32, h0: f32, h1: f32) -> f32 {
-    return (d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1);
-}
-
-/* (nearer end, width, curvature) of cell i of one row. h: the widths in u of the cell before, the cell, and the one behind it,
- * which there always is, as a cell is counted from the nearer end. */
-fn hairlut_row_cell(axis: hairlut_axis, row: i32, i: i32, high: bool, h: vec3f) -> vec3f {
-    let x0 = hairlut_row_texel(axis, row, i, high);
-    let x1 = hairlut_row_texel(axis, row, i + 1, high);
-    let d = x1 - x0;
-    let before = x0 - hairlut_row_texel(axis, row, max(i - 1, 0), high);
-    let after = hairlut_row_texel(axis, row, i + 2, high) - x1;
-    var c = d - h.y * after / h.z;
-    if (i > 0) {
-        c = 0.5 * h.y * (hairlut_knot_slope(before, d, h.x, h.y) - hairlut_knot_slope(d, after, h.y, h.z));
-    }
-    let bound = axis.limit * abs(d);
-    return vec3f(x0, d, clamp(c, -bound, bound));
-}
-
-/* Cell i, counted from the low or the high end. Each row's cell is taken before they are blended: neighbouring texels subtract
- * without rounding. */
-fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32, high: bool) -> hairlut_cell {
-    let m0 = hairlut_axis_tail(axis, i);
-    let m1 = hairlut_axis_tail(axis, i + 1);
-    let h = vec3f(m0 - hairlut_axis_tail(axis, max(i - 1, 0)), m1 - m0, hairlut_axis_tail(axis, i + 2) - m1);
-    let a = hairlut_row_cell(axis, rows.row, i, high, h);
-    let b = hairlut_row_cell(axis, rows.row + 1, i, high, h);
-    return hairlut_cell(hairlut_blend_part(a.x, b.x, rows.t), hairlut_blend_part(a.y, b.y, rows.t),
-                        hairlut_blend_part(a.z, b.z, rows.t), m0, h.y);
+    return hairlut_from_bits((hairlut_bits(s) >> 2u) + 0x30000000u);
 }
 
 /* u to cell. The fold at u = 1/2 keeps the relative precision of both tails. */
 fn hairlut_axis_knot(axis: hairlut_axis, number: f32) -> hairlut_knot {
-    let u = clamp(hairlut_tame(number, 0.0), 0.0, 1.0);
-    let m = select(1.0 - u, u, u <= 0.5);
-    var y = m;
-    if (axis.warp == hairlut_warp_octaves) {
-        y = hairlut_curve(m + axis.e);
-    }
-    let c = y * axis.inverse_k - axis.f0 * axis.inverse_k; // the cell's part of it as C rounds it
-    return hairlut_knot(min(i32(max(c, 0.0)), (axis.columns - 1) / 2), u > 0.5, m);
+    let u = clamp(hairlut_bounded(number, 0.0f), 0.0f, 1.0f);
+    var knot: hairlut_knot;
+    knot.high = u > 0.5f;
+    let folded = 1.0f - u;
+    knot.m = min(u, folded);
+    let sum = knot.m + axis.e;
+    let y = select(knot.m, hairlut_curve(sum), axis.e > 0.0f);
+    let column = y * axis.scale - axis.origin; // rounded as in C, for the same cell beside a knot
+    knot.i = clamp(i32(column), 0, axis.columns / 2 - 1);
+    return knot;
+}
+
+/* Cell i, counted from the low or the high end. */
+fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32, high: bool) -> hairlut_cell {
+    let half_count = axis.columns / 2;
+    let column = select(i, half_count + i, high);
+    let at = axis.first + half_count + column * axis.height + rows.row;
+    let below = hairlut_fetch(axis.source, at);
+    let above = hairlut_fetch(axis.source, at + 1);
+    let knot = hairlut_fetch(axis.source, axis.first + i);
+    var cell: hairlut_cell;
+    cell.x0 = hairlut_blend(below.x, above.x, rows.t);
+    cell.w = hairlut_blend(below.y, above.y, rows.t);
+    cell.e0 = hairlut_blend(below.z, above.z, rows.t) / cell.w;
+    cell.e1 = hairlut_blend(below.w, above.w, rows.t) / cell.w;
+    cell.m0 = knot.x;
+    cell.inverse_h = knot.y;
+    cell.h = knot.z;
+    return cell;
 }
 
 /* The cell whose blended texels enclose x. */
-fn hairlut_axis_find(axis: hairlut_axis, rows: hairlut_rows, x: f32) -> i32 {
-    var i = 0;
-    var n = axis.columns - 1;
-    while (n > 1) {
-        let half_n = n / 2;
-        if (hairlut_texel(axis, rows, i + half_n) <= x) {
-            i += half_n;
-        }
-        n -= half_n;
-    }
-    return i;
+fn hairlut_axis_cell_around(axis: hairlut_axis, rows: hairlut_rows, x: f32) -> hairlut_cell {
+    let half_count = axis.columns / 2;
+    let trees = axis.first + half_count + 2 * half_count * axis.height;
+    let n = hairlut_search(axis.source, trees + rows.row * axis.tree, axis.tree, rows.t, x);
+    let high = n >= half_count;
+    let i = select(n, axis.columns - 2 - n, high);
+    return hairlut_axis_cell(axis, rows, i, high);
 }
 
-/* (fraction of a cell at which x lies, |dx/df| there). The root of the quadratic is that slope, written as the slope at the
- * cell's flatter end and the distance from there, which cancels nothing. */
-fn hairlut_cell_solve(cell: hairlut_cell, x: f32) -> vec2f {
-    let falls = cell.d < 0.0;
-    let d = abs(cell.d);
-    let c = select(cell.c, -cell.c, falls);
-    let along = clamp(select(x - cell.x0, cell.x0 - x, falls), 0.0, d);
-    let flat_slope = d - abs(c);
-    let away = select(along, d - along, c > 0.0);
-    let slope = sqrt(flat_slope * flat_slope + 4.0 * abs(c) * away);
-    return vec2f(min(2.0 * along / (d + c + slope), 1.0), slope);
+fn hairlut_cell_g(cell: hairlut_cell, f: f32, g: f32) -> f32 {
+    return f * f + g * g + (cell.e0 + cell.e1) * (f * g);
 }
 
 fn hairlut_axis_sample(axis: hairlut_axis, theta_r: f32, u: f32) -> hairlut_draw {
     let knot = hairlut_axis_knot(axis, u);
     let cell = hairlut_axis_cell(axis, hairlut_axis_rows(axis, theta_r), knot.i, knot.high);
-    let f = (knot.m - cell.m0) / cell.h;
-    let x = cell.x0 + f * (cell.d + cell.c * (1.0 - f));
-    let slope = abs(cell.d + cell.c * (1.0 - 2.0 * f));
-    return hairlut_draw(clamp(x, axis.low, axis.high), cell.h / slope);
+    let f = clamp((knot.m - cell.m0) * cell.inverse_h, 0.0f, 1.0f);
+    let g = 1.0f - f;
+    let G = hairlut_cell_g(cell, f, g);
+    let N = cell.e1 * (f * f) + 2.0f * (f * g) + cell.e0 * (g * g);
+    var draw: hairlut_draw;
+    draw.x = clamp(cell.x0 + cell.w * ((f * f + cell.e0 * (f * g)) / G), axis.low, axis.high);
+    draw.pdf = cell.h / abs(cell.w) * (G * G / N);
+    return draw;
 }
 
-/* Cell n of a row, counted from the low end, as seen from the nearer end. */
-fn hairlut_axis_found(axis: hairlut_axis, rows: hairlut_rows, n: i32) -> hairlut_cell {
-    let high = n >= axis.columns / 2;
-    return hairlut_axis_cell(axis, rows, select(n, axis.columns - 2 - n, high), high);
+/* Where x lies in a cell: f, g, and R of above. */
+struct hairlut_root {
+    f: f32,
+    g: f32,
+    r: f32,
+}
+
+fn hairlut_cell_solve(cell: hairlut_cell, x: f32) -> hairlut_root {
+    let X = clamp((x - cell.x0) / cell.w, 0.0f, 1.0f);
+    let Z = 1.0f - X;
+    let B = cell.e0 * Z - cell.e1 * X;
+    let R = sqrt(B * B + 4.0f * (X * Z));
+    let a = select(R - B, 2.0f * X, B >= 0.0f);
+    let b = select(2.0f * Z, R + B, B >= 0.0f);
+    var root: hairlut_root;
+    root.f = a / (a + b);
+    root.g = b / (a + b);
+    root.r = R;
+    return root;
 }
 
 /* Density per rad of hairlut_axis_sample at x; 0 outside the domain and for NaN. */
 fn hairlut_axis_pdf(axis: hairlut_axis, theta_r: f32, x: f32) -> f32 {
     if (hairlut_is_nan(x) || x < axis.low || x > axis.high) {
-        return 0.0;
+        return 0.0f;
     }
-    let rows = hairlut_axis_rows(axis, theta_r);
-    let cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
-    return cell.h / hairlut_cell_solve(cell, x).y;
+    let cell = hairlut_axis_cell_around(axis, hairlut_axis_rows(axis, theta_r), x);
+    let root = hairlut_cell_solve(cell, x);
+    return cell.h / abs(cell.w) * (hairlut_cell_g(cell, root.f, root.g) / root.r);
 }
 
 /* The u that hairlut_axis_sample turns into x; outside the domain the nearer end's, 0 for NaN. */
 fn hairlut_axis_invert(axis: hairlut_axis, theta_r: f32, number: f32) -> f32 {
-    let x = hairlut_tame(number, axis.low);
-    let rows = hairlut_axis_rows(axis, theta_r);
-    let cell = hairlut_axis_found(axis, rows, hairlut_axis_find(axis, rows, x));
-    let m = clamp(cell.m0 + cell.h * hairlut_cell_solve(cell, x).x, 0.0, 1.0);
-    return select(m, 1.0 - m, cell.d < 0.0);
+    let x = clamp(hairlut_bounded(number, axis.low), axis.low, axis.high);
+    let cell = hairlut_axis_cell_around(axis, hairlut_axis_rows(axis, theta_r), x);
+    let m = clamp(cell.m0 + cell.h * hairlut_cell_solve(cell, x).f, 0.0f, 1.0f);
+    return select(m, 1.0f - m, cell.w < 0.0f);
 }
 
-/* ---- the two lobes -------------------------------------------------------------------------------------------- */
+/* ---- one lobe ------------------------------------------------------------------------------------------------- */
 
 /* NaN anywhere, or an infinite azimuth: the density is 0. */
 fn hairlut_known(theta_r: f32, phi_r: f32, a: f32, b: f32) -> bool {
     return !hairlut_is_nan(theta_r) && hairlut_is_finite(phi_r) && !hairlut_is_nan(a) && !hairlut_is_nan(b);
 }
 
-/* The azimuth that the table direct_phi holds, in [0, 2 pi). */
-fn hairlut_relative_azimuth(model: hairlut_model, phi_r: f32, phi_i: f32) -> f32 {
+/* The azimuth that a table holds before mirror and turn, in [-2 pi, 2 pi]: phi_i - phi_r or phi_i + phi_r. */
+fn hairlut_relative_azimuth(phi: hairlut_axis, phi_r: f32, phi_i: f32) -> f32 {
     let r = hairlut_wrap(phi_r, -hairlut_pi);
     let i = hairlut_wrap(phi_i, -hairlut_pi);
-    return hairlut_wrap(select(i - r, i + r, model.azimuth == hairlut_azimuth_sum), 0.0);
+    return select(i - r, i + r, phi.azimuth == hairlut_sum);
 }
 
-/* phi_i in [-pi, pi) from the azimuth in the table. */
-fn hairlut_incident_azimuth(model: hairlut_model, phi_r: f32, phi: f32) -> f32 {
+/* phi_i in [-pi, pi) from such an azimuth. */
+fn hairlut_incident_azimuth(phi: hairlut_axis, phi_r: f32, relative: f32) -> f32 {
     let r = hairlut_wrap(phi_r, -hairlut_pi);
-    return hairlut_wrap(select(phi + r, phi - r, model.azimuth == hairlut_azimuth_sum), -hairlut_pi);
+    let phi_i = select(relative + r, relative - r, phi.azimuth == hairlut_sum);
+    return hairlut_wrap(phi_i, -hairlut_pi);
 }
 
 fn hairlut_finish(theta_i: f32, phi_i: f32, pdf: f32) -> hairlut_sample {
-    return hairlut_sample(theta_i, phi_i, pdf, hairlut_pdf_to_solid_angle(pdf, theta_i));
+    var s: hairlut_sample;
+    s.theta_i = theta_i;
+    s.phi_i = phi_i;
+    s.pdf_angle = pdf;
+    s.pdf_solid_angle = hairlut_pdf_to_solid_angle(pdf, theta_i);
+    return s;
 }
 
-/* Draws an incident direction for the viewer direction (theta_r, phi_r) from two numbers in [0,1). */
-fn hairlut_sample_direct(model: hairlut_model, theta_r: f32, phi_r: f32, u_theta: f32, u_phi: f32) -> hairlut_sample {
-    let theta = hairlut_axis_sample(model.direct_theta, theta_r, u_theta);
-    let phi = hairlut_axis_sample(model.direct_phi, theta_r, u_phi);
-    let pdf = select(0.0, theta.pdf * phi.pdf, hairlut_known(theta_r, phi_r, u_theta, u_phi));
-    return hairlut_finish(theta.x, hairlut_incident_azimuth(model, phi_r, phi.x), pdf);
+/* A lobe's draw, mirrored by side = -1 and turned around the fibre. A uniform azimuth ignores both. */
+fn hairlut_lobe_sample(lobe: hairlut_lobe, side: f32, turn: f32, theta_r: f32, phi_r: f32, u_theta: f32,
+                       u_phi: f32) -> hairlut_sample {
+    let theta = hairlut_axis_sample(lobe.theta, theta_r, u_theta);
+    var phi_i = hairlut_two_pi * clamp(hairlut_bounded(u_phi, 0.0f), 0.0f, 1.0f) - hairlut_pi;
+    var pdf = hairlut_inverse_two_pi;
+    if (lobe.phi.azimuth == hairlut_uniform) {
+        phi_i = select(-hairlut_pi, phi_i, phi_i < hairlut_pi);
+    } else {
+        let phi = hairlut_axis_sample(lobe.phi, theta_r, u_phi);
+        phi_i = hairlut_incident_azimuth(lobe.phi, phi_r, side * (phi.x + turn));
+        pdf = phi.pdf;
+    }
+    let known = select(0.0f, theta.pdf * pdf, hairlut_known(theta_r, phi_r, u_theta, u_phi));
+    return hairlut_finish(theta.x, phi_i, known);
 }
 
-fn hairlut_sample_multiple(model: hairlut_model, theta_r: f32, phi_r: f32, u_theta: f32, u_phi: f32) -> hairlut_sample {
-    let theta = hairlut_axis_sample(model.multiple_theta, theta_r, u_theta);
-    let u = clamp(hairlut_tame(u_phi, 0.0), 0.0, 1.0);
-    let phi = hairlut_two_pi * u - hairlut_pi;
-    let pdf = select(0.0, theta.pdf * hairlut_inverse_two_pi, hairlut_known(theta_r, phi_r, u_theta, u_phi));
-    return hairlut_finish(theta.x, select(-hairlut_pi, phi, phi < hairlut_pi), pdf);
+fn hairlut_lobe_pdf(lobe: hairlut_lobe, side: f32, turn: f32, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> f32 {
+    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i)) {
+        return 0.0f;
+    }
+    let pdf = hairlut_axis_pdf(lobe.theta, theta_r, theta_i);
+    if (lobe.phi.azimuth == hairlut_uniform) {
+        return pdf * hairlut_inverse_two_pi;
+    }
+    let phi = hairlut_wrap(side * hairlut_relative_azimuth(lobe.phi, phi_r, phi_i) - turn, 0.0f);
+    return pdf * hairlut_axis_pdf(lobe.phi, theta_r, phi);
+}
+
+fn hairlut_has_lobe(model: hairlut_model, lobe: i32) -> bool {
+    return lobe >= 0 && lobe < model.lobes;
+}
+
+/* Draws an incident direction from one lobe, without a turn, for the viewer direction (theta_r, phi_r) and two numbers in
+ * [0,1). A lobe that the model does not have: density 0, angles 0. */
+fn hairlut_sample_lobe(model: hairlut_model, lobe: i32, theta_r: f32, phi_r: f32, u_theta: f32, u_phi: f32) -> hairlut_sample {
+    if (!hairlut_has_lobe(model, lobe)) {
+        return hairlut_finish(0.0f, 0.0f, 0.0f);
+    }
+    return hairlut_lobe_sample(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, u_theta, u_phi);
 }
 
 /* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
-fn hairlut_pdf_direct(model: hairlut_model, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> f32 {
-    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i)) {
-        return 0.0;
+fn hairlut_pdf_lobe(model: hairlut_model, lobe: i32, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> f32 {
+    if (!hairlut_has_lobe(model, lobe)) {
+        return 0.0f;
     }
-    let phi = hairlut_relative_azimuth(model, phi_r, phi_i);
-    return hairlut_axis_pdf(model.direct_theta, theta_r, theta_i) * hairlut_axis_pdf(model.direct_phi, theta_r, phi);
+    return hairlut_lobe_pdf(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, theta_i, phi_i);
 }
 
-fn hairlut_pdf_multiple(model: hairlut_model, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> f32 {
-    if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i)) {
-        return 0.0;
+/* The numbers from which hairlut_sample_lobe draws (theta_i, phi_i). Directions outside the domain give the nearer end's u;
+ * NaN, or a lobe that the model does not have, gives 0. */
+fn hairlut_invert_lobe(model: hairlut_model, lobe: i32, theta_r: f32, phi_r: f32, theta_i: f32,
+                       phi_i: f32) -> hairlut_numbers {
+    var numbers: hairlut_numbers;
+    numbers.u_theta = 0.0f;
+    numbers.u_phi = 0.0f;
+    if (!hairlut_has_lobe(model, lobe)) {
+        return numbers;
     }
-    return hairlut_axis_pdf(model.multiple_theta, theta_r, theta_i) * hairlut_inverse_two_pi;
-}
-
-/* The numbers (u_theta, u_phi) from which the sampling function draws (theta_i, phi_i). Directions outside the domain give
- * the nearer end's u; NaN gives 0. */
-fn hairlut_invert_direct(model: hairlut_model, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> vec2f {
-    let phi = select(hairlut_relative_azimuth(model, phi_r, phi_i), 0.0, hairlut_is_nan(phi_i));
-    return vec2f(hairlut_axis_invert(model.direct_theta, theta_r, theta_i),
-                 hairlut_axis_invert(model.direct_phi, theta_r, phi));
-}
-
-fn hairlut_invert_multiple(model: hairlut_model, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> vec2f {
-    return vec2f(hairlut_axis_invert(model.multiple_theta, theta_r, theta_i),
-                 (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_inverse_two_pi);
-}
-
-/* ---- both lobes at once --------------------------------------------------------------------------------------- */
-
-fn hairlut_pdf_mixture(model: hairlut_model, direct_weight: f32, theta_r: f32, phi_r: f32, theta_i: f32,
-                       phi_i: f32) -> f32 {
-    if (hairlut_is_nan(direct_weight)) {
-        return 0.0;
+    let axes = hairlut_lobe_at(model, lobe);
+    numbers.u_theta = hairlut_axis_invert(axes.theta, theta_r, theta_i);
+    if (axes.phi.azimuth == hairlut_uniform) {
+        numbers.u_phi = (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_inverse_two_pi;
+        return numbers;
     }
-    let w = clamp(hairlut_tame(direct_weight, 0.0), 0.0, 1.0);
-    return w * hairlut_pdf_direct(model, theta_r, phi_r, theta_i, phi_i)
-           + (1.0 - w) * hairlut_pdf_multiple(model, theta_r, phi_r, theta_i, phi_i);
+    let relative = select(hairlut_relative_azimuth(axes.phi, phi_r, phi_i), 0.0f, hairlut_is_nan(phi_i));
+    numbers.u_phi = hairlut_axis_invert(axes.phi, theta_r, hairlut_wrap(relative, 0.0f));
+    return numbers;
 }
 
-/* With probability direct_weight, clamped to [0,1], draws from the direct lobe (u_lobe < direct_weight), else from the
- * multiple lobe. The densities returned are the mixture's: direct_weight * direct + (1 - direct_weight) * multiple. */
-fn hairlut_sample_mixture(model: hairlut_model, direct_weight: f32, theta_r: f32, phi_r: f32, u_lobe: f32, u_theta: f32,
+/* ---- the mixture ---------------------------------------------------------------------------------------------- */
+
+/* A place between two nodes: the gap, and how far along it, in [0,1]. */
+struct hairlut_place {
+    gap: i32,
+    gaps: i32,
+    t: f32,
+}
+
+/* Where x lies among the nodes that header texel `at` describes: (first texel, number of nodes, texels of the search tree).
+ * There is a texel (node, 1 / gap) for each gap, then the tree of the inner nodes. A single node has one gap, of no width. */
+fn hairlut_place_of(model: hairlut_model, at: i32, x: f32) -> hairlut_place {
+    let nodes = hairlut_header(model.source, at);
+    let first = model.first + i32(nodes.x);
+    var place: hairlut_place;
+    place.gaps = max(i32(nodes.y) - 1, 1);
+    place.gap = hairlut_search(model.source, first + place.gaps, i32(nodes.z), 0.0f, x);
+    let node = hairlut_fetch(model.source, first + place.gap);
+    place.t = clamp((x - node.x) * node.y, 0.0f, 1.0f);
+    return place;
+}
+
+/* Shares and turns at theta_r and the offset h in [-1,1] at which the fibre is hit: linear in theta_r and in asin(h). A turn goes
+ * along the shorter arc, in theta_r first. */
+fn hairlut_mixture_at(model: hairlut_model, theta_r: f32, offset: f32) -> hairlut_mixture {
+    let h = clamp(hairlut_bounded(offset, -1.0f), -1.0f, 1.0f);
+    let side = select(1.0f, -1.0f, model.mirrored && h < 0.0f);
+    let row = hairlut_place_of(model, model.first + 1, hairlut_bounded(theta_r, -hairlut_huge));
+    let column = hairlut_place_of(model, model.first + 2, hairlut_asin(side * h));
+    let values = model.values + 2 * model.lobes * (row.gap * column.gaps + column.gap);
+    var mixture: hairlut_mixture;
+    mixture.side = side;
+    mixture.known = !hairlut_is_nan(theta_r) && !hairlut_is_nan(offset);
+    for (var k = 0; k < model.lobes; k++) {
+        let share = hairlut_fetch(model.source, values + 2 * k);    // (low offset: row, row above; high offset: the same)
+        let turn = hairlut_fetch(model.source, values + 2 * k + 1); // (low offset: row, arc to the row above; high ...)
+        let share_low = hairlut_blend(share.x, share.y, row.t);
+        let share_high = hairlut_blend(share.z, share.w, row.t);
+        let turn_low = turn.x + row.t * turn.y;
+        let turn_high = turn.z + row.t * turn.w;
+        mixture.share[k] = hairlut_blend(share_low, share_high, column.t);
+        mixture.turn[k] = turn_low + column.t * hairlut_wrap(turn_high - turn_low, -hairlut_pi);
+    }
+    return mixture;
+}
+
+/* A share, 0 in place of a negative one, and so far from the largest float that a sum is finite and its reciprocal is not 0. */
+fn hairlut_share(mixture: hairlut_mixture, k: i32) -> f32 {
+    return clamp(mixture.share[k], 0.0f, 1e36f);
+}
+
+/* The sum of the shares; 0 where one is infinite or NaN. */
+fn hairlut_total_share(model: hairlut_model, mixture: hairlut_mixture) -> f32 {
+    var total = 0.0f;
+    var known = true;
+    for (var k = 0; k < model.lobes; k++) {
+        known = known && hairlut_is_finite(mixture.share[k]);
+        total += hairlut_share(mixture, k);
+    }
+    return select(0.0f, total, known);
+}
+
+/* The density of the mixture at (theta_i, phi_i); total is the sum of its shares. Lobe `drawn`, if there is one, has the
+ * density that is given. */
+fn hairlut_mixture_pdf(model: hairlut_model, mixture: hairlut_mixture, total: f32, theta_r: f32, phi_r: f32, theta_i: f32,
+                       phi_i: f32, drawn: i32, given: f32) -> f32 {
+    var sum = 0.0f;
+    for (var k = 0; k < model.lobes; k++) {
+        let weight = hairlut_share(mixture, k) / total;
+        if (weight > 0.0f) {
+            var pdf = given;
+            if (k != drawn) {
+                pdf = hairlut_lobe_pdf(hairlut_lobe_at(model, k), mixture.side, mixture.turn[k], theta_r, phi_r, theta_i, phi_i);
+            }
+            sum += weight * pdf;
+        }
+    }
+    return sum;
+}
+
+/* ---- the whole hair ------------------------------------------------------------------------------------------- */
+
+/* Draws an incident direction for the viewer direction (theta_r, phi_r) from three numbers in [0,1): u_lobe chooses the lobe.
+ * The densities are those of the whole mixture. */
+fn hairlut_sample_hair_at(model: hairlut_model, mixture: hairlut_mixture, theta_r: f32, phi_r: f32, u_lobe: f32, u_theta: f32,
                           u_phi: f32) -> hairlut_sample {
-    let w = clamp(hairlut_tame(direct_weight, 0.0), 0.0, 1.0);
-    var s: hairlut_sample;
-    var direct: f32;
-    var multiple: f32;
-    if (!hairlut_is_nan(u_lobe) && u_lobe < w) {
-        s = hairlut_sample_direct(model, theta_r, phi_r, u_theta, u_phi);
-        direct = s.pdf_angle;
-        multiple = hairlut_pdf_multiple(model, theta_r, phi_r, s.theta_i, s.phi_i);
-    } else {
-        s = hairlut_sample_multiple(model, theta_r, phi_r, u_theta, u_phi);
-        multiple = s.pdf_angle;
-        direct = hairlut_pdf_direct(model, theta_r, phi_r, s.theta_i, s.phi_i);
+    let total = hairlut_total_share(model, mixture);
+    let wanted = clamp(hairlut_bounded(u_lobe, 0.0f), 0.0f, 1.0f) * total;
+    var drawn = 0;
+    var turn = mixture.turn[0];
+    var below = 0.0f;
+    for (var k = 0; k < model.lobes; k++) {
+        let share = hairlut_share(mixture, k);
+        if (share > 0.0f && below <= wanted) {
+            drawn = k;
+            turn = mixture.turn[k];
+        }
+        below += share;
     }
-    let known = !hairlut_is_nan(direct_weight) && !hairlut_is_nan(u_lobe)
-                && hairlut_known(theta_r, phi_r, u_theta, u_phi);
-    return hairlut_finish(s.theta_i, s.phi_i, select(0.0, w * direct + (1.0 - w) * multiple, known));
+    let s = hairlut_lobe_sample(hairlut_lobe_at(model, drawn), mixture.side, turn, theta_r, phi_r, u_theta, u_phi);
+    let known = mixture.known && !hairlut_is_nan(u_lobe) && hairlut_known(theta_r, phi_r, u_theta, u_phi);
+    if (!known || !(total > 0.0f)) {
+        return hairlut_finish(s.theta_i, s.phi_i, 0.0f);
+    }
+    let pdf = hairlut_mixture_pdf(model, mixture, total, theta_r, phi_r, s.theta_i, s.phi_i, drawn, s.pdf_angle);
+    return hairlut_finish(s.theta_i, s.phi_i, pdf);
+}
+
+/* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
+fn hairlut_pdf_hair_at(model: hairlut_model, mixture: hairlut_mixture, theta_r: f32, phi_r: f32, theta_i: f32,
+                       phi_i: f32) -> f32 {
+    let total = hairlut_total_share(model, mixture);
+    if (!mixture.known || !(total > 0.0f)) {
+        return 0.0f;
+    }
+    return hairlut_mixture_pdf(model, mixture, total, theta_r, phi_r, theta_i, phi_i, -1, 0.0f);
+}
+
+/* The same with the model's own shares. Where a shader calls both, take the mixture once and call the two above. */
+fn hairlut_sample_hair(model: hairlut_model, theta_r: f32, phi_r: f32, offset: f32, u_lobe: f32, u_theta: f32,
+                       u_phi: f32) -> hairlut_sample {
+    return hairlut_sample_hair_at(model, hairlut_mixture_at(model, theta_r, offset), theta_r, phi_r, u_lobe, u_theta, u_phi);
+}
+
+fn hairlut_pdf_hair(model: hairlut_model, theta_r: f32, phi_r: f32, offset: f32, theta_i: f32, phi_i: f32) -> f32 {
+    return hairlut_pdf_hair_at(model, hairlut_mixture_at(model, theta_r, offset), theta_r, phi_r, theta_i, phi_i);
 }

@@ -8,45 +8,48 @@ import pytest
 from shaders.agreement import (
     ANGLE_TOLERANCE,
     DENSITY_TOLERANCE,
-    MODELS,
     NUMBER_TOLERANCE,
+    ROOT,
+    Reference,
     agreement,
     hard_records,
-    model_tables,
     random_records,
-    reference,
     scene,
 )
 from shaders.backends import BACKENDS, Scene
+from shaders.models import MODELS
 
+from hairlut import exr
 from hairlut.files import write_whole
 from report.markdown import table
 from report.places import PAGES
 
 RANDOM = 100_000
+SHIPPED = ("printed", "fitted", "brown")
 COLUMNS = ("back end", "model", "inputs", "angle [rad]", "density, relative", "inverted u", "beside a border")
 
 
-def row(backend: str, model: str, tables: Scene, records: np.ndarray) -> list[object]:
+def row(backend: str, name: str, reference: Reference, where: Scene, records: np.ndarray) -> list[object]:
     """One line of the table; says so where this machine lacks the back end."""
     try:
-        got = BACKENDS[backend](tables, records)
+        got = BACKENDS[backend](where, records)
     except pytest.skip.Exception as reason:
-        return [backend, model, f"not run: {reason}", "", "", "", ""]
-    r = agreement(reference(model), records, got)
+        return [backend, name, f"not run: {reason}", "", "", "", ""]
+    r = agreement(reference, records, got)
     figures = f"{r.angle:.1e}", f"{r.density:.1e}", f"{r.number:.1e}", r.bordering
-    return [backend, model, f"{r.records:,}", *figures]
+    return [backend, name, f"{r.records:,}", *figures]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="report.shaders", description=__doc__)
     parser.add_argument("--out", type=Path, default=PAGES / "shaders.md", metavar="FILE", help="%(default)s")
     out = parser.parse_args().out
+    models = {name: exr.read_model(ROOT / "luts" / name) for name in SHIPPED}
+    models |= {name: make() for name, make in MODELS.items()}
     rows = []
-    for model in MODELS:
-        tables = scene(model_tables(model))
-        records = np.concatenate([hard_records(tables), random_records(RANDOM)])
-        rows += [row(backend, model, tables, records) for backend in BACKENDS]
+    for name, model in models.items():
+        records = np.concatenate([hard_records(model), random_records(RANDOM, len(model.lobes))])
+        rows += [row(backend, name, Reference(model), scene(model), records) for backend in BACKENDS]
     limits = (f"{limit:.0e}" for limit in (ANGLE_TOLERANCE, DENSITY_TOLERANCE, NUMBER_TOLERANCE))
     rows.append(["tolerance", "", "", *limits, "0.1 %"])
     template = Path(__file__).with_suffix(".md").read_text()

@@ -1,14 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs the shipped shaders on software drivers: one function a back end, with the same records in and out.
 
-A record holds theta_r, phi_r, u_theta, u_phi, u_lobe, direct_weight, theta_i, phi_i. A result holds the
-sample of each lobe and of the mixture (theta_i, phi_i, pdf_angle, pdf_solid_angle), the three densities, the
-inverse of cos(theta_i), and the two inverted pairs of numbers.
+A record holds theta_r, phi_r, offset, lobe; share, u_lobe, u_theta, u_phi; theta_i, phi_i, 0, 0. A result
+holds the samples (theta_i, phi_i, pdf_angle, pdf_solid_angle) of the lobe, of the hair, and of the hair with
+shares of the record's own; the three densities of (theta_i, phi_i) and 1 / cos(theta_i); the lobe's two
+inverted numbers, 0, 0.
 """
 
 import atexit
 import base64
 import contextlib
+import ctypes
 import functools
+import importlib.util
+import os
 import shutil
 import subprocess
 import tempfile
@@ -21,7 +26,8 @@ import pytest
 
 HERE = Path(__file__).parent
 SHADERS = HERE.parents[1] / "runtime" / "shaders"
-INPUTS, OUTPUTS = 8, 20
+INPUTS, OUTPUTS = 12, 20
+WIDTH = 1024  # of the texture that a stream is
 CHROMIUM_FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -35,6 +41,7 @@ CHROMIUM_FLAGS = (
     "--disable-sync",
     "--no-first-run",
 )
+WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 RUN_IN_BROWSER = """
 const done = arguments[arguments.length - 1], [name, ...rest] = Array.from(arguments).slice(0, -1);
 (async () => window[name](...rest))().then(done, error => done("error: " + error.message));
@@ -43,17 +50,27 @@ const done = arguments[arguments.length - 1], [name, ...rest] = Array.from(argum
 
 @dataclass(frozen=True)
 class Scene:
-    """tables (rows, columns) float32: three tables, one below another; axes (9, 4) float32: their numbers;
-    azimuth: 0 difference, 1 sum."""
+    """stream (n, 4) float32: texels of models; first: where the one to read begins."""
 
-    tables: np.ndarray
-    axes: np.ndarray
-    azimuth: int
+    stream: np.ndarray
+    first: int = 0
+
+
+def assembler():
+    """runtime/shaders/source/assemble.py as a module."""
+    spec = importlib.util.spec_from_file_location("assemble", SHADERS / "source" / "assemble.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def source(harness: str, shader: str) -> str:
-    """A test's main program with the shipped file pasted where an include would stand."""
-    return (HERE / harness).read_text().replace("//@hairlut", (SHADERS / shader).read_text())
+    """A test's main program with the shipped file, and what a test does with a record, pasted in."""
+    record = (HERE / "record.inl").read_text()
+    if shader.endswith(".wgsl"):
+        record = assembler().wgsl(record)
+    text = (HERE / harness).read_text().replace("//@hairlut", (SHADERS / shader).read_text())
+    return text.replace("//@record", record)
 
 
 def tool(name: str, package: str) -> str:
@@ -70,16 +87,15 @@ def run_glsl(scene: Scene, records: np.ndarray) -> np.ndarray:
         context = moderngl.create_standalone_context(backend="egl", require=430)
     except Exception as error:  # a bare Exception where libGL is missing
         pytest.skip(f"no OpenGL 4.30 by EGL ({error}): apt-get install libgl1 libegl1 libgl1-mesa-dri")
-    height, width = scene.tables.shape
     shader = context.compute_shader(source("harness.glsl", "hairlut.glsl"))
-    texture = context.texture((width, height), 1, scene.tables.tobytes(), dtype="f4")
+    size = WIDTH, len(scene.stream) // WIDTH
+    texture = context.texture(size, 4, scene.stream.tobytes(), dtype="f4")
     texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
     texture.use(0)
     context.buffer(records.tobytes()).bind_to_storage_buffer(0)
     out = context.buffer(reserve=len(records) * OUTPUTS * 4)
     out.bind_to_storage_buffer(1)
-    shader["axes"].write(scene.axes.tobytes())
-    shader["azimuth"], shader["count"] = scene.azimuth, len(records)
+    shader["first"], shader["count"] = scene.first, len(records)
     shader.run((len(records) + 63) // 64)
     context.memory_barrier(moderngl.ALL_BARRIER_BITS)
     result = np.frombuffer(out.read(), np.float32).reshape(-1, OUTPUTS)
@@ -114,25 +130,20 @@ def _run_wgpu(scene: Scene, records: np.ndarray, code: str | bytes) -> np.ndarra
     if not adapters:
         pytest.skip("no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers")
     device = min(adapters, key=lambda a: a.info["adapter_type"] != "CPU").request_device_sync()
-    height, width = scene.tables.shape
-    usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
-    texture = device.create_texture(size=(width, height, 1), format="r32float", usage=usage)
-    layout = {"bytes_per_row": width * 4, "rows_per_image": height}
-    device.queue.write_texture({"texture": texture}, scene.tables.tobytes(), layout, (width, height, 1))
-    axes = _axes_and_count(scene, records)
-    uniform = device.create_buffer_with_data(data=axes.tobytes(), usage="UNIFORM")
+    hairs = device.create_buffer_with_data(data=scene.stream.tobytes(), usage="STORAGE")
+    place = device.create_buffer_with_data(data=_place(scene, records).tobytes(), usage="UNIFORM")
     inputs = device.create_buffer_with_data(data=records.tobytes(), usage="STORAGE")
     out = device.create_buffer(size=len(records) * OUTPUTS * 4, usage="STORAGE | COPY_SRC")
     kinds = [
-        {"texture": {"sample_type": "unfilterable-float", "view_dimension": "2d"}},
+        {"buffer": {"type": "read-only-storage"}},
         {"buffer": {"type": "uniform"}},
         {"buffer": {"type": "read-only-storage"}},
         {"buffer": {"type": "storage"}},
     ]
     entries = [{"binding": k, "visibility": wgpu.ShaderStage.COMPUTE, **kind} for k, kind in enumerate(kinds)]
     group = device.create_bind_group_layout(entries=entries)
-    buffers = [{"buffer": b, "offset": 0, "size": b.size} for b in (uniform, inputs, out)]
-    resources = [{"binding": k, "resource": r} for k, r in enumerate([texture.create_view(), *buffers])]
+    buffers = [{"buffer": b, "offset": 0, "size": b.size} for b in (hairs, place, inputs, out)]
+    resources = [{"binding": k, "resource": r} for k, r in enumerate(buffers)]
     pipeline = device.create_compute_pipeline(
         layout=device.create_pipeline_layout(bind_group_layouts=[group]),
         compute={"module": device.create_shader_module(code=code), "entry_point": "main"},
@@ -177,34 +188,62 @@ def _browser():
 
 def run_webgl(scene: Scene, records: np.ndarray) -> np.ndarray:
     """GLSL ES 3.00 in a browser: transform feedback of a vertex shader."""
-    rest = [_text(scene.axes), scene.azimuth, _text(records), len(records)]
-    return _run_in_browser("runWebgl", source("harness.es.glsl", "hairlut.glsl"), scene, rest)
+    return _run_in_browser("runWebgl", source("harness.es.glsl", "hairlut.glsl"), scene, records)
 
 
 def run_webgpu(scene: Scene, records: np.ndarray) -> np.ndarray:
     """WGSL compute in a browser."""
-    rest = [_text(_axes_and_count(scene, records)), _text(records), len(records)]
-    return _run_in_browser("runWebgpu", source("harness.wgsl", "hairlut.wgsl"), scene, rest)
+    return _run_in_browser("runWebgpu", source("harness.wgsl", "hairlut.wgsl"), scene, records)
 
 
-def _run_in_browser(function: str, code: str, scene: Scene, rest: list) -> np.ndarray:
-    tables = [_text(scene.tables), scene.tables.shape[1]]
-    text = _browser().execute_async_script(RUN_IN_BROWSER, function, code, *tables, *rest)
+def _run_in_browser(function: str, code: str, scene: Scene, records: np.ndarray) -> np.ndarray:
+    arguments = [code, _text(scene.stream), scene.first, _text(records), len(records)]
+    text = _browser().execute_async_script(RUN_IN_BROWSER, function, *arguments)
     if text in ("error: no WebGL2", "error: no WebGPU"):
         pytest.skip(f"this browser has {text[7:]}")
     assert not text.startswith("error:"), text
     return np.frombuffer(base64.b64decode(text), np.float32).reshape(-1, OUTPUTS)
 
 
-def _axes_and_count(scene: Scene, records: np.ndarray) -> np.ndarray:
-    return np.vstack([scene.axes, [[scene.azimuth, len(records), 0, 0]]]).astype(np.float32)
+def _place(scene: Scene, records: np.ndarray) -> np.ndarray:
+    return np.int32([scene.first, len(records), 0, 0])
 
 
 def _text(array: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(array, np.float32).tobytes()).decode()
 
 
+@functools.cache
+def cxx(folder: Path = SHADERS) -> ctypes.CDLL:
+    """The body of folder/hairlut.cuh compiled as C++17; a warning in the shipped one is an error."""
+    compiler = shutil.which(os.environ.get("CXX", "c++"))
+    if compiler is None:
+        pytest.skip("no C++ compiler: apt-get install g++")
+    out = Path(tempfile.mkdtemp(prefix="hairlut"), "body.so")
+    flags = ["-std=c++17", "-O1", "-ffp-contract=off", "-shared", "-fPIC", f"-I{folder}", f"-I{HERE}"]
+    flags += WARNINGS if folder == SHADERS else []
+    subprocess.run([compiler, *flags, HERE / "harness.cpp", "-o", out], check=True)
+    return ctypes.CDLL(str(out))
+
+
+def run_cxx(scene: Scene, records: np.ndarray, folder: Path = SHADERS) -> np.ndarray:
+    """C++17."""
+    out = np.empty((len(records), OUTPUTS), np.float32)
+    stream, records = (np.ascontiguousarray(part, np.float32) for part in (scene.stream, records))
+    pointers = [ctypes.c_void_p(array.ctypes.data) for array in (stream, records, out)]
+    cxx(folder).evaluate(pointers[0], scene.first, ctypes.c_size_t(len(records)), *pointers[1:])
+    return out
+
+
+def count_fetches(scene: Scene) -> dict[str, int]:
+    """Texels read, without those of a model's head: see `count` in harness.cpp."""
+    stream, counts = np.ascontiguousarray(scene.stream, np.float32), (ctypes.c_long * 5)()
+    cxx().count(ctypes.c_void_p(stream.ctypes.data), scene.first, counts)
+    return dict(zip(("sample_lobe", "pdf_lobe", "mixture", "sample_hair", "pdf_hair"), counts, strict=True))
+
+
 BACKENDS: dict[str, Callable[[Scene, np.ndarray], np.ndarray]] = {
+    "C++17": run_cxx,
     "GLSL 4.30, llvmpipe": run_glsl,
     "WGSL, lavapipe": run_wgsl,
     "HLSL as SPIR-V, lavapipe": run_hlsl,

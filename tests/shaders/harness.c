@@ -1,21 +1,31 @@
-/* The C library behind two calls: a model from three tables, and every function that the shaders have too. */
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The C library behind two calls: a model from arrays, and every function that the shaders have too. */
 #include <stddef.h>
 
 #include "hairlut.h"
 
-enum { INPUTS = 8, OUTPUTS = 20 };
+enum { INPUTS = 12, OUTPUTS = 20 };
 
-/* sizes: width, height, warp of each table; numbers: theta_r_min, theta_r_max, domain_min, domain_max, warp_e, cell_limit.
- * NULL if the library refuses a table. The process ends soon: nobody frees the model. */
-const hairlut_model *create(const float *const texels[3], const int *sizes, const float *numbers, int azimuth)
+/* texels[k], sizes[3k]: width, height, warp, numbers[5k]: theta_r_min, theta_r_max, domain_min, domain_max, e of table k; lobes[3k]:
+ * table of theta, of phi (-1: none), and azimuth of lobe k; grid: nodes of theta_r, of the offset, mirrored. NULL if the library
+ * refuses the model. The process ends soon: nobody frees it. */
+const hairlut_model *create(int table_count, const float *const *texels, const int *sizes, const float *numbers, int lobe_count,
+                            const int *lobes, const int *grid, const float *theta_r, const float *offset, const float *share,
+                            const float *turn, char *message)
 {
-    hairlut_model_desc desc = {.azimuth = (hairlut_azimuth)azimuth};
-    hairlut_table *const tables[3] = {&desc.direct_theta, &desc.direct_phi, &desc.multiple_theta};
-    for (int k = 0; k < 3; ++k, sizes += 3, numbers += 6)
-        *tables[k] = (hairlut_table){texels[k],  sizes[0],   sizes[1],   numbers[0], numbers[1],
-                                     numbers[2], numbers[3], (hairlut_warp)sizes[2], numbers[4], numbers[5]};
+    static const char *const names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "o", "p"};
+    hairlut_table tables[2 * HAIRLUT_MAX_LOBES];
+    hairlut_lobe_desc descs[HAIRLUT_MAX_LOBES];
+    for (int k = 0; k < table_count; ++k, sizes += 3, numbers += 5)
+        tables[k] = (hairlut_table){sizeof *tables, texels[k],  sizes[0],   sizes[1], numbers[0], numbers[1], numbers[2], numbers[3],
+                                    (hairlut_warp)sizes[2], numbers[4]};
+    for (int k = 0; k < lobe_count; ++k, lobes += 3)
+        descs[k] = (hairlut_lobe_desc){sizeof *descs, names[k], &tables[lobes[0]], lobes[1] < 0 ? NULL : &tables[lobes[1]],
+                                       (hairlut_azimuth)lobes[2]};
+    const hairlut_mixture_desc mixture = {sizeof mixture, grid[0], grid[1], theta_r, offset, share, turn, grid[2]};
+    const hairlut_model_desc desc = {sizeof desc, lobe_count, descs, &mixture};
     hairlut_model *model = NULL;
-    return hairlut_model_create(&desc, NULL, &model, NULL) == HAIRLUT_OK ? model : NULL;
+    return hairlut_model_create(&desc, NULL, &model, message) == HAIRLUT_OK ? model : NULL;
 }
 
 static void put(float *out, hairlut_sample s)
@@ -26,20 +36,24 @@ static void put(float *out, hairlut_sample s)
     out[3] = s.pdf_solid_angle;
 }
 
-/* n records of eight inputs to n results. */
+/* n records of twelve inputs to n results. Shares of a record's own: `share` for even lobes, 1 - share for odd ones. */
 void evaluate(const hairlut_model *model, size_t n, const float *in, float *out)
 {
     for (size_t k = 0; k < n; ++k, in += INPUTS, out += OUTPUTS) {
-        const float theta_r = in[0], phi_r = in[1], u_theta = in[2], u_phi = in[3];
-        const float u_lobe = in[4], weight = in[5], theta_i = in[6], phi_i = in[7];
-        put(out, hairlut_sample_direct(model, theta_r, phi_r, u_theta, u_phi));
-        put(out + 4, hairlut_sample_multiple(model, theta_r, phi_r, u_theta, u_phi));
-        put(out + 8, hairlut_sample_mixture(model, weight, theta_r, phi_r, u_lobe, u_theta, u_phi));
-        out[12] = hairlut_pdf_direct(model, theta_r, phi_r, theta_i, phi_i);
-        out[13] = hairlut_pdf_multiple(model, theta_r, phi_r, theta_i, phi_i);
-        out[14] = hairlut_pdf_mixture(model, weight, theta_r, phi_r, theta_i, phi_i);
+        const float theta_r = in[0], phi_r = in[1], offset = in[2], share = in[4];
+        const float u_lobe = in[5], u_theta = in[6], u_phi = in[7], theta_i = in[8], phi_i = in[9];
+        const int lobe = (int)in[3];
+        float shares[HAIRLUT_MAX_LOBES];
+        for (int l = 0; l < HAIRLUT_MAX_LOBES; ++l)
+            shares[l] = l % 2 ? 1.0f - share : share;
+        put(out, hairlut_sample_lobe(model, lobe, theta_r, phi_r, u_theta, u_phi));
+        put(out + 4, hairlut_sample_hair(model, NULL, theta_r, phi_r, offset, u_lobe, u_theta, u_phi));
+        put(out + 8, hairlut_sample_hair(model, shares, theta_r, phi_r, offset, u_lobe, u_theta, u_phi));
+        out[12] = hairlut_pdf_lobe(model, lobe, theta_r, phi_r, theta_i, phi_i);
+        out[13] = hairlut_pdf_hair(model, NULL, theta_r, phi_r, offset, theta_i, phi_i);
+        out[14] = hairlut_pdf_hair(model, shares, theta_r, phi_r, offset, theta_i, phi_i);
         out[15] = hairlut_pdf_to_solid_angle(1.0f, theta_i);
-        hairlut_invert_direct(model, theta_r, phi_r, theta_i, phi_i, out + 16);
-        hairlut_invert_multiple(model, theta_r, phi_r, theta_i, phi_i, out + 18);
+        hairlut_invert_lobe(model, lobe, theta_r, phi_r, theta_i, phi_i, out + 16);
+        out[18] = out[19] = 0.0f;
     }
 }

@@ -1,17 +1,17 @@
 #version 300 es
 precision highp float;
 precision highp int;
-uniform highp sampler2D records; // RGBA32F: two texels a record
-uniform highp sampler2D tables;
-uniform vec4 axes[9];
-uniform int azimuth;
-out vec4 direct;
-out vec4 multiple;
-out vec4 mixture;
+uniform highp sampler2D records; // RGBA32F: three texels a record
+uniform highp sampler2D hairs;
+uniform int first;
+out vec4 lobe;
+out vec4 hair;
+out vec4 given;
 out vec4 densities;
 out vec4 numbers;
-#define HAIRLUT_FETCH(table, column, row) texelFetch(tables, ivec2(column, (table) + (row)), 0).r
+#define HAIRLUT_FETCH(source, i) texelFetch(hairs, ivec2((i) & 1023, (i) >> 10), 0)
 //@hairlut
+//@record
 
 vec4 packed_sample(hairlut_sample s)
 {
@@ -26,16 +26,13 @@ vec4 record(int k)
 
 void main()
 {
-    hairlut_model hair = hairlut_model(hairlut_axis_of(axes[0], axes[1], axes[2]), hairlut_axis_of(axes[3], axes[4], axes[5]),
-                                       hairlut_axis_of(axes[6], axes[7], axes[8]), azimuth);
-    vec4 a = record(2 * gl_VertexID);
-    vec4 b = record(2 * gl_VertexID + 1);
-    direct = packed_sample(hairlut_sample_direct(hair, a.x, a.y, a.z, a.w));
-    multiple = packed_sample(hairlut_sample_multiple(hair, a.x, a.y, a.z, a.w));
-    mixture = packed_sample(hairlut_sample_mixture(hair, b.y, a.x, a.y, b.x, a.z, a.w));
-    densities = vec4(hairlut_pdf_direct(hair, a.x, a.y, b.z, b.w), hairlut_pdf_multiple(hair, a.x, a.y, b.z, b.w),
-                     hairlut_pdf_mixture(hair, b.y, a.x, a.y, b.z, b.w), hairlut_pdf_to_solid_angle(1.0, b.z));
-    numbers = vec4(hairlut_invert_direct(hair, a.x, a.y, b.z, b.w), hairlut_invert_multiple(hair, a.x, a.y, b.z, b.w));
+    int k = 3 * gl_VertexID;
+    test_result r = test_record(hairlut_model_at(0, first), record(k), record(k + 1), record(k + 2));
+    lobe = packed_sample(r.lobe);
+    hair = packed_sample(r.hair);
+    given = packed_sample(r.given);
+    densities = vec4(r.pdf_lobe, r.pdf_hair, r.pdf_given, r.inverse_cosine);
+    numbers = vec4(r.numbers.u_theta, r.numbers.u_phi, 0.0, 0.0);
     gl_Position = vec4(0.0);
     gl_PointSize = 1.0;
 }

@@ -1,9 +1,10 @@
-Texture2D<float> tables : register(t0);
-cbuffer Axes : register(b1) { float4 axes[10]; }; // the last one: (azimuth, count, 0, 0)
+StructuredBuffer<float4> hairs : register(t0);
+cbuffer Place : register(b1) { int4 place; }; // (first texel, count, 0, 0)
 StructuredBuffer<float4> inputs : register(t2);
 RWStructuredBuffer<float4> outputs : register(u3);
-#define HAIRLUT_FETCH(table, column, row) tables.Load(int3(column, (table) + (row), 0))
+#define HAIRLUT_FETCH(source, i) hairs[i]
 //@hairlut
+//@record
 
 float4 packed_sample(hairlut_sample s)
 {
@@ -13,21 +14,13 @@ float4 packed_sample(hairlut_sample s)
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID)
 {
-    uint k = id.x;
-    if (k >= uint(axes[9].y))
+    int k = int(id.x);
+    if (k >= place.y)
         return;
-    hairlut_model hair;
-    hair.direct_theta = hairlut_axis_of(axes[0], axes[1], axes[2]);
-    hair.direct_phi = hairlut_axis_of(axes[3], axes[4], axes[5]);
-    hair.multiple_theta = hairlut_axis_of(axes[6], axes[7], axes[8]);
-    hair.azimuth = int(axes[9].x);
-    float4 a = inputs[2 * k];
-    float4 b = inputs[2 * k + 1];
-    outputs[5 * k] = packed_sample(hairlut_sample_direct(hair, a.x, a.y, a.z, a.w));
-    outputs[5 * k + 1] = packed_sample(hairlut_sample_multiple(hair, a.x, a.y, a.z, a.w));
-    outputs[5 * k + 2] = packed_sample(hairlut_sample_mixture(hair, b.y, a.x, a.y, b.x, a.z, a.w));
-    outputs[5 * k + 3] = float4(hairlut_pdf_direct(hair, a.x, a.y, b.z, b.w), hairlut_pdf_multiple(hair, a.x, a.y, b.z, b.w),
-                                hairlut_pdf_mixture(hair, b.y, a.x, a.y, b.z, b.w), hairlut_pdf_to_solid_angle(1.0, b.z));
-    outputs[5 * k + 4] = float4(hairlut_invert_direct(hair, a.x, a.y, b.z, b.w),
-                                hairlut_invert_multiple(hair, a.x, a.y, b.z, b.w));
+    test_result r = test_record(hairlut_model_at(0, place.x), inputs[3 * k], inputs[3 * k + 1], inputs[3 * k + 2]);
+    outputs[5 * k] = packed_sample(r.lobe);
+    outputs[5 * k + 1] = packed_sample(r.hair);
+    outputs[5 * k + 2] = packed_sample(r.given);
+    outputs[5 * k + 3] = float4(r.pdf_lobe, r.pdf_hair, r.pdf_given, r.inverse_cosine);
+    outputs[5 * k + 4] = float4(r.numbers.u_theta, r.numbers.u_phi, 0.0, 0.0);
 }

@@ -1,117 +1,192 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The shipped shaders against the C library, on every back end that this machine has."""
+
+import shutil
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 from shaders import backends
 from shaders.agreement import (
     DENSITIES,
-    MODELS,
     NUMBERS,
+    ROOT,
     SAMPLES,
     Agreement,
     Reference,
     agreement,
     hard_records,
-    model_tables,
     random_records,
-    reference,
     scene,
 )
-from shaders.backends import BACKENDS, Scene
+from shaders.backends import BACKENDS, HERE, SHADERS
+from shaders.models import MODELS, OCTAVES, SheetLobe, SheetModel, near_field, theta
 
-from hairlut.cell import Cell
-from hairlut.lobes import FITTED
-from hairlut.table import bake_table
-from hairlut.warp import Warp
+from hairlut import exr
+from hairlut.mixture import constant
+from hairlut.stream import stream
 
-RANDOM = 100_000
-
-
-@pytest.fixture(scope="module", params=MODELS)
-def model(request: pytest.FixtureRequest) -> str:
-    return request.param
+RANDOM = 40_000
+SHIPPED = sorted(path.name for path in (ROOT / "luts").iterdir() if list(path.glob("*_theta.exr")))
+NAMES = [*MODELS, *SHIPPED]
+_known: dict[str, tuple] = {}
 
 
-@pytest.fixture(scope="module")
-def tables(model: str) -> Scene:
-    return scene(model_tables(model))
+def known(name: str) -> tuple:
+    """(model, the C library's reading of it, its scene, records)"""
+    if name not in _known:
+        model = MODELS[name]() if name in MODELS else exr.read_model(ROOT / "luts" / name)
+        every = 1 if name in MODELS else 4
+        records = [hard_records(model)[::every], random_records(RANDOM, len(model.lobes))]
+        _known[name] = model, Reference(model), scene(model), np.concatenate(records)
+    return _known[name]
 
 
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_agrees_with_c_on_random_and_hard_inputs(backend: str, model: str, tables: Scene):
-    records = np.concatenate([hard_records(tables), random_records(RANDOM)])
-    result = agreement(reference(model), records, BACKENDS[backend](tables, records))
-    print(backend, model, result)
+def test_agrees_with_c_on_random_and_hard_inputs(backend: str, name: str):
+    _, reference, where, records = known(name)
+    result = agreement(reference, records, BACKENDS[backend](where, records))
+    print(backend, name, result)
     assert result.holds(), result
 
 
-SHAPES = {  # the smallest table, a wide one, and the baseline without a warp or a curve
-    "4x2": (4, 2, "octaves e=0.0001", "parabola limit=0.95"),
-    "130x7": (130, 7, "octaves e=1.52587890625e-05", "parabola limit=0.5"),
-    "9x33 uniform, linear": (9, 33, "uniform", "linear"),
-}
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("backend", BACKENDS)
-def test_agrees_with_c_on_other_tables(backend: str, shape: str):
-    width, height, warp, cell = SHAPES[shape]
-    lobes = FITTED.lobes
-    tables = [bake_table(lobe, width, height, Warp.parse(warp), Cell.parse(cell)) for lobe in lobes]
-    records = np.concatenate([hard_records(scene(tables))[::7], random_records(5000)])
-    result = agreement(Reference(tables), records, BACKENDS[backend](scene(tables), records))
-    assert result.holds(), result
+@pytest.mark.parametrize("language", ["glsl", "hlsl", "cuh", "wgsl"])
+def test_shipped_file_is_made_of_the_body(language: str):
+    """Else: python3 runtime/shaders/source/assemble.py"""
+    assert (SHADERS / f"hairlut.{language}").read_text() == backends.assembler().assembled(language)
 
 
 # One wrong step each; the comparison must notice all of them.
 MUTANTS = {
-    "linear cells": ("axis.limit * abs(d)", "0.0 * abs(d)"),
-    "end cells without their rule": ("c = d - h.y * after / h.z", "c = 0.5 * (d - h.y * after / h.z)"),
-    "curvature not clamped": ("clamp(c, -bound, bound)", "c"),
-    "knots' slopes as if cells were of one width": (
-        "(d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1)",
-        "2.0 * (d0 + d1) / (h0 + h1) / (d1 / d0 + d0 / d1)",
+    "slopes of the cell's own": ("hairlut_blend(below.z, above.z, rows.t) / cell.w", "1.0f"),
+    "density of the fraction, not of u": ("draw.pdf = cell.h / abs(cell.w)", "draw.pdf = 1.0f / abs(cell.w)"),
+    "rows blended with 8 bits": (
+        "rows.t = r - float(rows.row)",
+        "rows.t = floor((r - float(rows.row)) * 256.0f) / 256.0f",
     ),
-    "density of the column, not of u": (
-        "return hairlut_draw(clamp(x, axis.low, axis.high), cell.h / slope)",
-        "return hairlut_draw(clamp(x, axis.low, axis.high), axis.k / slope)",
+    "upper tail not folded": (
+        "knot.m = min(u, folded)",
+        "knot.m = folded > u ? u : 1.0f - min(folded + 1e-7f, 1.0f)",
     ),
-    "rows blended with 8 bits": ("(row, r - float(row))", "(row, floor((r - float(row)) * 256.0) / 256.0)"),
-    "upper tail not folded": ("u <= 0.5 ? u : 1.0 - u", "u"),
-    "difference taken for sum": ("? phi - r : phi + r", "? phi + r : phi - r"),
-    "NaN not told": ("return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u", "return false"),
-    "density of one lobe": ("known ? w * direct + (1.0 - w) * multiple", "known ? direct"),
-    "cosine of the float pi/2": ("z * series - 4.37113883e-8", "z * series"),
+    "the low half in place of the high one": ("int column = high ? half_count + i : i;", "int column = i;"),
+    "one key of a node": ("branch += hairlut_blend(keys.y", "branch += 1e38f + hairlut_blend(keys.y"),
+    "keys of one row": ("hairlut_blend(keys.x, keys.z, t) <= x", "keys.x <= x"),
+    "difference taken for sum": ("? relative - r : relative + r", "? relative + r : relative - r"),
+    "NaN not told": ("return (hairlut_bits(x) & 0x7fffffffu) > 0x7f800000u", "return hairlut_bits(x) == 0u"),
+    "cosine of the float pi/2": ("z * w * series - 4.37113883e-8f", "z * w * series"),
+    "places from the start of the stream": ("axis.first = model + int(shape.x)", "axis.first = int(shape.x)"),
+    "shares not divided": ("hairlut_share(mixture, k) / total", "hairlut_share(mixture, k)"),
+    "a lobe of share 0 drawn": ("if (share > 0.0f && below <= wanted)", "if (below <= wanted)"),
+    "shares of the lower row": ("hairlut_blend(share.x, share.y, row.t)", "share.x"),
+    "linear in the offset": ("hairlut_asin(side * h)", "1.57079637f * side * h"),
+    "longer arc": (
+        "turn_low + column.t * hairlut_wrap(turn_high - turn_low, -hairlut_pi)",
+        "turn_low + column.t * (turn_high - turn_low)",
+    ),
+    "sample not mirrored": ("side * (phi.x + turn)", "phi.x + turn"),
+    "turn not mirrored": ("side * (phi.x + turn)", "side * phi.x + turn"),
+    "density not mirrored": (
+        "side * hairlut_relative_azimuth(lobe.phi, phi_r, phi_i) - turn",
+        "hairlut_relative_azimuth(lobe.phi, phi_r, phi_i) - turn",
+    ),
+    "density not turned": ("phi_r, phi_i) - turn, 0.0f)", "phi_r, phi_i) - 0.0f * turn, 0.0f)"),
 }
 
 
+def mutated(folder: Path, right: str, wrong: str) -> Path:
+    shipped = (SHADERS / "hairlut.cuh").read_text()
+    assert shipped.count(right) == 1
+    (folder / "hairlut.cuh").write_text(shipped.replace(right, wrong))
+    return folder
+
+
 @pytest.mark.parametrize("mutant", MUTANTS)
-def test_comparison_rejects_a_shader_with_one_wrong_step(mutant: str, monkeypatch: pytest.MonkeyPatch):
-    tables = scene(model_tables("fitted"))
-    records = np.concatenate([hard_records(tables), random_records(2000)])
-    right, wrong = MUTANTS[mutant]
-    shipped = backends.source("harness.glsl", "hairlut.glsl")
-    assert right in shipped
-    monkeypatch.setattr(backends, "source", lambda *_: shipped.replace(right, wrong))
-    got = backends.run_glsl(tables, records)
+def test_comparison_rejects_a_body_with_one_wrong_step(mutant: str, tmp_path: Path):
+    _, reference, where, records = known("near field")
+    records = records[: -RANDOM + 2000]
+    got = backends.run_cxx(where, records, mutated(tmp_path, *MUTANTS[mutant]))
     try:
-        result = agreement(reference("fitted"), records, got)
+        result = agreement(reference, records, got)
     except AssertionError:
         return
     assert not result.holds(), result
 
 
-def test_comparison_rejects_one_wrong_density_and_one_wrong_number(model: str):
+def test_comparison_rejects_one_wrong_density_and_one_wrong_number():
     """The tolerances themselves: C's own results, one value of one record moved."""
-    records = random_records(1000)
-    got = reference(model)(records)
-    assert agreement(reference(model), records, got) == Agreement(
-        1000, 0.0, pytest.approx(0, abs=2e-7), 0.0, 0
-    )
-    for column in (SAMPLES["direct"] + 2, SAMPLES["mixture"] + 3, DENSITIES["multiple"]):
+    model = near_field()
+    reference, records = Reference(model), random_records(1000, len(model.lobes))
+    got = reference(records)
+    assert agreement(reference, records, got) == Agreement(1000, 0.0, pytest.approx(0, abs=2e-7), 0.0, 0)
+    for column in (SAMPLES["lobe"] + 2, SAMPLES["hair"] + 3, DENSITIES["given"]):
         off = got.copy()
         off[7, column] *= 1 + 2e-4
-        assert not agreement(reference(model), records, off).holds()
+        assert not agreement(reference, records, off).holds()
     off = got.copy()
-    off[7, NUMBERS["direct"]] = 1 - off[7, NUMBERS["direct"]]
-    assert not agreement(reference(model), records, off).holds()
+    off[7, NUMBERS[0]] = 1 - off[7, NUMBERS[0]]
+    assert not agreement(reference, records, off).holds()
+
+
+def test_fetches_are_those_of_the_readme():
+    """An axis: a column and two cells, and for a density three texels of the search up to 28 columns, four up
+    to 82. The mixture of 6 theta_r and 5 offsets: two texels of a search and a node on each axis, then two
+    texels a lobe."""
+    column, cells, search = 1, 2, {44: 4, 33: 4, 24: 3, 28: 3}
+    pdf = {width: column + cells + steps for width, steps in search.items()}
+    counts = backends.count_fetches(scene(near_field()))
+    assert counts["sample_lobe"] == 2 * (column + cells)
+    assert counts["pdf_lobe"] == pdf[44] + pdf[33]
+    assert counts["mixture"] == 2 * (2 + 1) + 2 * 3
+    assert counts["sample_hair"] == 2 * (column + cells) + pdf[44] + pdf[33] + pdf[44]
+    assert counts["pdf_hair"] == pdf[44] + pdf[33] + pdf[24] + pdf[28] + pdf[44]
+    readme = (SHADERS / "README.md").read_text()
+    for name in ("fitted", "brown"):
+        counts = backends.count_fetches(scene(exr.read_model(ROOT / "luts" / name)))
+        numbers = " | ".join(str(count) for count in counts.values())
+        assert f"| `{name}` | {numbers} |" in readme
+
+
+def test_example_of_the_readme_is_the_layout():
+    sheet = theta(5, 3, OCTAVES)
+    lobe = SheetLobe("only", sheet, None)
+    texels = stream(SheetModel("example", (lobe,), constant(("only",))))
+    assert len(texels) == 1024
+    assert texels[0].tolist() == [1, 0, 11, 35]
+    assert texels[1:3].tolist() == [[9, 1, 0, 0], [10, 1, 0, 0]]
+    assert texels[3].tolist() == [13, 5, 3, 4]
+    assert not texels[6:9].any()
+    assert texels[11, :].tolist() == [1, 1, 1, 1]
+    near, far = sheet.texels[2, [3, 2]]
+    assert texels[26, :2].tolist() == [near, far - near]
+    assert texels[27 + 4, [0, 2]].tolist() == sheet.texels[1:, 3].tolist()
+    assert (texels[34] == np.float32(1e38)).all()
+    assert not texels[35:].any()
+
+
+def test_compiles_as_cuda(tmp_path: Path):
+    """By nvcc, or by clang without the toolkit: to PTX for the device, and for the host. No GPU runs it
+    here."""
+    out = tmp_path / "kernel.ptx"
+    common = ["-std=c++17", f"-I{SHADERS}", f"-I{HERE}", str(HERE / "kernel.cu")]
+    if shutil.which("nvcc"):
+        commands = [["nvcc", "-ptx", "-o", str(out), *common]]
+    else:
+        clang = [
+            backends.tool("clang++", "clang"),
+            "-x",
+            "cuda",
+            "-nocudainc",
+            "-nocudalib",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+        ]
+        clang += ["-include", str(HERE / "cuda_stub.h"), *common]
+        device = ["--cuda-device-only", "--cuda-gpu-arch=sm_70", "-O1", "-S", "-o", str(out)]
+        commands = [[*clang, *device], [*clang, "--cuda-host-only", "-fsyntax-only"]]
+    for command in commands:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    assert ".entry" in out.read_text()

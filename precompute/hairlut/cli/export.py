@@ -8,6 +8,7 @@ from . import OK, add_command
 
 EXAMPLES = """examples:
   hairlut export luts/printed luts/fitted --to c --out build/builtin_tables.c
+  hairlut export luts/brown --to raw --out build                     build/brown/hair.f32, for shaders
   hairlut export luts/fitted/direct_phi.exr --to raw --out build     build/fitted/direct_phi.f32 and .json
   hairlut export luts/printed luts/fitted --to npz --out build"""
 
@@ -18,7 +19,8 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         "export",
         help="write tables for engines that do not read OpenEXR",
         description="Writes baked tables in a form that does not need OpenEXR. c: one C source with the "
-        "models. raw: little-endian 32-bit floats, and a JSON file beside each table. npz: NumPy arrays.",
+        "models. raw: little-endian 32-bit floats, with a JSON file beside each: the tables, and each "
+        "directory's model as the shaders read it (runtime/shaders/README.md). npz: NumPy arrays.",
         epilog=EXAMPLES,
     )
     parser.add_argument(

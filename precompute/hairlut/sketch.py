@@ -18,11 +18,13 @@ from .exact import Exact, exact_at
 from .interpolant import Cells
 from .lobes import Array, Lobe
 from .measure import NODES, WEIGHTS, inclinations, narrowest_cell
-from .table import Table, row_angles, tabulate
+from .slopes import fitted
+from .table import Table, density_at, exact_knots, row_angles, tabulate
 from .warp import Warp
 
 PROBE = 33  # rows
 FEW_ROWS = 17
+FINE = 257  # columns
 PLACES = 6
 MIN_STEPS = 2.0  # of a float, that the narrowest cell spans
 EXPONENTS = range(-34, 1)  # of e
@@ -38,13 +40,28 @@ class Sketch:
         self.exact = exact_at(lobe, inclinations(lobe.theta_r_range, self.height, 1))
         rows = 2 * np.arange(self.height)
         self.few = rows[:: max(1, (self.height - 1) // (FEW_ROWS - 1))]
+        self.fine = Warp("octaves", 2.0 ** EXPONENTS[0])
+        self.cells = Cells(self.fine.widths(FINE), *exact_knots(self.exact, FINE, self.fine, self.few))
         self.on_rows = cache(self._on_rows)
         self.best_exponent = cache(self._best_exponent)
 
     def _on_rows(self, width: int, exponent: int) -> float:
-        """V on rows alone."""
-        table = usable(self.lobe, self.exact, width, exponent, self.few)
-        return float(_variance(*_knots(table), table, self.exact, self.few).max()) if table else np.inf
+        """V on the few rows alone."""
+        warp = Warp("octaves", 2.0**exponent)
+        m, upper = warp.knots(width)
+        middle = (m[0] + m[1]) / 2
+        quantiles = self._quantiles(np.append(m, [middle, middle]), np.append(upper, [False, True]))
+        x, middles = quantiles[:, :-2], (quantiles[:, -2], quantiles[:, -1])
+        if not narrowest_cell(x.astype(np.float32)) >= MIN_STEPS:
+            return np.inf
+        h = warp.widths(width)
+        slopes = fitted(x, h, density_at(self.exact, x, self.few), middles)
+        return float(_variance(x, slopes, h, self.exact, self.few).max())
+
+    def _quantiles(self, m: Array, upper: Array) -> Array:
+        """(rows, K) angles of the tails m, upper (K,), read from a fine table instead of inverted."""
+        i, f = self.fine.place(m, upper, FINE)
+        return self.cells.angle_at(np.arange(len(self.few))[:, None], i, f)
 
     def _best_exponent(self, width: int, near: int | None = None) -> int:
         """The exponent of e with the least V on rows, downhill from near, or from the best of a few."""
@@ -63,12 +80,11 @@ class Sketch:
     def blend(self, width: int, exponent: int) -> tuple[float, Array]:
         """(V midway between the probe's rows, beyond that on the rows; theta_r of the worst PLACES)."""
         rows, middles = 2 * np.arange(self.height), 2 * np.arange(self.height - 1) + 1
-        table = usable(self.lobe, self.exact, width, exponent, rows)
-        if not table:
-            return np.inf, self.exact.theta_r[middles[:PLACES]]
-        x, slopes = _knots(table)
-        on_rows = _variance(x, slopes, table, self.exact, rows)
-        found = _variance(_midway(x), _midway(slopes), table, self.exact, middles)
+        warp = Warp("octaves", 2.0**exponent)
+        x, slopes = exact_knots(self.exact, width, warp, rows)
+        h = warp.widths(width)
+        on_rows = _variance(x, slopes, h, self.exact, rows)
+        found = _variance(_midway(x), _midway(slopes), h, self.exact, middles)
         worst = np.argsort(found)[-PLACES:]
         return float((found - _midway(on_rows)).max()), self.exact.theta_r[middles[worst]]
 
@@ -79,11 +95,10 @@ class Sketch:
         angles = np.concatenate([theta_r[j], theta_r[j + 1], (theta_r[j] + theta_r[j + 1]) / 2])
         exact = exact_at(self.lobe, angles)
         count = len(j)
-        table = usable(self.lobe, exact, width, exponent, np.arange(2 * count))
-        if not table:
-            return np.inf
-        x, slopes = ((rows[:count] + rows[count:]) / 2 for rows in _knots(table))
-        blended = _variance(x, slopes, table, exact, np.arange(2 * count, 3 * count))
+        warp = Warp("octaves", 2.0**exponent)
+        knots = exact_knots(exact, width, warp, np.arange(2 * count))
+        x, slopes = ((rows[:count] + rows[count:]) / 2 for rows in knots)
+        blended = _variance(x, slopes, warp.widths(width), exact, np.arange(2 * count, 3 * count))
         return max(float(blended.max()), self.on_rows(width, exponent))
 
 
@@ -99,17 +114,12 @@ def usable(
     return table if narrowest_cell(table.texels) >= MIN_STEPS else None
 
 
-def _knots(table: Table) -> tuple[Array, Array]:
-    return table.texels.astype(float), table.slopes.astype(float)
-
-
 def _midway(rows: Array) -> Array:
     return (rows[:-1] + rows[1:]) / 2
 
 
-def _variance(x: Array, slopes: Array, table: Table, exact: Exact, row: Array) -> Array:
-    """(n,) V of knots x, slopes (n, W) at the inclinations row (n,), numbers of the exact lobe's."""
-    h = table.warp.widths(table.width)
+def _variance(x: Array, slopes: Array, h: Array, exact: Exact, row: Array) -> Array:
+    """(n,) V of knots x, slopes (n, W), h (W-1,) apart in u, at the inclinations numbered row (n,)."""
     angle, slope = Cells(h, x, slopes).read(NODES)
     inclination = np.repeat(row, angle[0].size)
     density = exact.density(angle.reshape(1, -1), inclination).reshape(angle.shape)

@@ -83,10 +83,7 @@ def tabulate(lobe: Lobe, exact: Exact, width: int, warp: Warp, rows: slice | Arr
     """The table whose rows are these of the exact lobe's, evenly spaced over the lobe's range of theta_r."""
     theta_r = exact.theta_r[rows]
     check_size(width, len(theta_r))
-    m, upper = warp.knots(width)
-    middle = (m[0] + m[1]) / 2  # of the first cell, and of the last one from its end
-    quantiles = exact.quantiles(np.append(m, [middle, middle]), np.append(upper, [False, True]), rows)
-    x, middles = quantiles[:, :-2], (quantiles[:, -2], quantiles[:, -1])
+    x, slopes = exact_knots(exact, width, warp, rows)
     texels = x.astype(np.float32)
     _refuse_flat_cells(lobe, theta_r, texels, warp)
     return Table(
@@ -99,12 +96,21 @@ def tabulate(lobe: Lobe, exact: Exact, width: int, warp: Warp, rows: slice | Arr
         parameters=lobe.formula,
         warp=warp,
         texels=texels,
-        slopes=fitted(x, warp.widths(width), _density(exact, x, rows), middles).astype(np.float32),
+        slopes=slopes.astype(np.float32),
         log_mass=exact.log_mass[rows],
     )
 
 
-def _density(exact: Exact, x: Array, rows: slice | Array) -> Array:
+def exact_knots(exact: Exact, width: int, warp: Warp, rows: slice | Array = ALL) -> tuple[Array, Array]:
+    """(x, slopes), each (R, width): the knots of these rows in double precision."""
+    m, upper = warp.knots(width)
+    middle = (m[0] + m[1]) / 2  # of the first cell, and of the last one from its end
+    quantiles = exact.quantiles(np.append(m, [middle, middle]), np.append(upper, [False, True]), rows)
+    x, middles = quantiles[:, :-2], (quantiles[:, -2], quantiles[:, -1])
+    return x, fitted(x, warp.widths(width), density_at(exact, x, rows), middles)
+
+
+def density_at(exact: Exact, x: Array, rows: slice | Array) -> Array:
     """(R, K) density of the lobe at the angles x (R, K) of these rows, per rad."""
     numbers = np.arange(len(exact.theta_r))[rows]
     return exact.density(x.reshape(1, -1), np.repeat(numbers, x.shape[1])).reshape(x.shape)

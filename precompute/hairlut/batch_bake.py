@@ -27,7 +27,10 @@ STATUSES = ("baked", UP_TO_DATE, "failed")
 TIMEOUT = 600.0  # seconds that a model of a directory may take
 
 PRELOAD = ["hairlut.cli.bake", "scipy.interpolate"]
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+ENVIRONMENT = {
+    "PYTHONSAFEPATH": "1",  # import nothing from the working directory, which may hold a folder named hairlut
+    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
+}
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,7 @@ def bake_many(
 ) -> list[Outcome]:
     """Bakes each model file that is not current with these options of `hairlut bake`, `jobs` at a time, and
     lets none take longer than timeout, in seconds; the outcomes in order."""
-    os.environ.update(ONE_THREAD)  # of the processes; this one computes nothing
+    os.environ.update(ENVIRONMENT)  # of the processes; this one imports and computes nothing more
     context = _context()
     with ThreadPoolExecutor(max_workers=jobs) as pool, TemporaryDirectory() as folder:
         waiting = [

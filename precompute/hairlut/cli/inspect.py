@@ -88,7 +88,7 @@ def describe(path: Path, table: Table, errors: dict[str, float]) -> dict:
         "file": str(path),
         "width": table.width,
         "height": table.height,
-        "bytes_of_texels": table.texels.nbytes,
+        "bytes_of_texels": table.nbytes,
         "bytes_of_file": path.stat().st_size,
         "header": exr.attributes(table),
         "errors": errors,

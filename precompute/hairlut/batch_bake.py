@@ -19,7 +19,6 @@ from tempfile import TemporaryDirectory
 from time import monotonic
 
 from .errors import HairlutError
-from .files import write_whole
 from .modelfile import SUFFIXES
 
 UP_TO_DATE = "up to date"
@@ -65,22 +64,6 @@ def _files(folder: Path) -> list[Path]:
     if not found:
         raise HairlutError(f"{folder}: no model files: expected names ending in {', '.join(SUFFIXES)}")
     return found
-
-
-def family_file(paths: Sequence[Path]) -> Path | None:
-    """The file that makes a family of the models of these directories, if there is one; HairlutError if
-    there are several, whose models would mix."""
-    from .fit import familyfiles  # slow to import
-
-    found = [path / familyfiles.NAME for path in paths if (path / familyfiles.NAME).is_file()]
-    if len(found) > 1:
-        raise HairlutError(f"{found[0]} and {found[1]}: bake each family into a directory of its own (--out)")
-    return found[0] if found else None
-
-
-def copy_family(file: Path, out: Path) -> Path:
-    """Puts a family's file beside the baked models; its new path."""
-    return write_whole(out / file.name, file.read_bytes())
 
 
 def bake_many(

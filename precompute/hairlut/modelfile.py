@@ -22,7 +22,7 @@ import its neighbours; userfile.py says how it runs. precompute/examples/ contai
 
 A **TOML file** gives Gaussians as numbers: tomlmodel.py.
 
-An **npz file** holds masses of cells, as `hairlut fit` writes them: for each lobe NAME the arrays NAME.edges,
+An **npz file** holds masses of cells: for each lobe NAME the arrays NAME.edges,
 NAME.theta_r and NAME.mass of tabulated.TabulatedDensity, the string `azimuth`, and the number LOBE.share of
 each lobe, if the shares are not equal.
 """
@@ -56,7 +56,7 @@ SETTINGS = {
 }
 """Of a Python file: the type of each, and what it is in words."""
 
-KEPT = 16  # tabulated lobes: more than lie between two uses of the same one in a family
+KEPT = 16  # tabulated lobes: more than a model has
 
 
 def _space(name: str) -> dict:
@@ -118,7 +118,7 @@ def tabulated(name: str, edges, theta_r, mass, formula: str = "") -> Lobe:
 
 @lru_cache(maxsize=KEPT)
 def _of_masses(name: str, *arrays: tuple[tuple[int, ...], bytes]) -> TabulatedDensity:
-    """The same object for the same numbers: lobes of it are equal, and a family's are baked once."""
+    """The same object for the same numbers: lobes of it are equal, and baked once."""
     return TabulatedDensity(*(np.frombuffer(data).reshape(shape) for shape, data in arrays), name)
 
 

@@ -160,7 +160,15 @@ def test_a_file_that_is_wrong_is_refused_in_one_line(tmp_path, capsys, text, exp
 
 
 @pytest.mark.parametrize(
-    "options", [("--lobes", "9"), ("--lobes", "x"), ("--tolerance", "0"), ("--budget", "nan")]
+    "options",
+    [
+        ("--lobes", "9"),
+        ("--lobes", "0"),
+        ("--name", "a/b"),
+        ("--plot", "x.exe"),
+        ("--tolerance", "0"),
+        ("--budget", "nan"),
+    ],
 )
 def test_options_that_make_no_sense_are_refused(tmp_path, capsys, options):
     path = fitted(tmp_path, FAR)

@@ -27,7 +27,7 @@ EXAMPLES = """examples:
   hairlut bake --size 64x64 --out square
   hairlut bake --size 64x64 --warp uniform --out baseline
   hairlut bake --model my_hair.py                   your own lobes (see the module hairlut.modelfile)
-  hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/, or a family from hairlut fit
+  hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/
   hairlut bake --model theirs.py --timeout 60       stop it after a minute
   parallel hairlut bake --out baked --model ::: hairs/*.py      the same, as the jobs of a queue"""
 
@@ -153,7 +153,7 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
     if not timeout > 0:
         raise HairlutError(f"--timeout {timeout:g}: expected seconds above 0")
     paths = [Path(name) for name in names]
-    sources, family = batch_bake.model_files(paths), batch_bake.family_file(paths)
+    sources = batch_bake.model_files(paths)
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("baking", total=len(sources))
@@ -174,8 +174,6 @@ def run_many(names: list[str], args: argparse.Namespace) -> int:
             print(f"  failed: {outcome.source}")
     if counts["failed"]:
         return CHECK_FAILED
-    if family:
-        print(batch_bake.copy_family(family, args.out))
     return OK
 
 

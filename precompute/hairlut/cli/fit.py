@@ -1,4 +1,4 @@
-"""hairlut fit: from measured, simulated or drawn scattering to model files that hairlut bake takes."""
+"""hairlut fit: from a BSDF, a grid or draws to textures that sample them, with their measured error."""
 
 import argparse
 import json
@@ -9,37 +9,37 @@ from pathlib import Path
 from time import perf_counter
 
 from ..errors import HairlutError
-from ..fit.decompose import PARTS
-from ..fit.distribution import CELLS, ROWS
-from ..fit.family import LOBES as FAMILY_LOBES
-from ..fit.family import SHAPES
-from ..fit.read import Draws, Grid, read
 from . import OK, add_command
-
-Report = Callable[[str, float], None]
 
 DEFAULT_TOLERANCE = 0.01
 DEFAULT_BUDGET = 120.0
 MAX_LOBES = 8
 
+Report = Callable[[str, float], None]
+
 EXAMPLES = """examples:
   hairlut fit my_hair.py --out luts           luts/my_hair/, ready for hairlut_load
   hairlut fit my_hair.py --lobes 4 --tolerance 0.003 --budget 300
-  hairlut fit goniometer.csv --out fits
-  hairlut fit bsdf_grid.npz --measure solid-angle && hairlut bake --model fits/bsdf_grid_masses.npz
-  hairlut fit offsets.npz && hairlut bake --model fits/offsets --size 64x37 --out baked/offsets
-my_hair.py defines bsdf(theta_r, theta_i, phi) or bsdf(theta_r, theta_i, phi, offset), which returns f per
-steradian, without the cosine, as in L = integral of f L_i cos(theta_i) domega; the sampler draws f
-cos(theta_i). The arguments are numpy arrays that broadcast, in radians: inclinations from the plane normal to
-the fibre, and phi = phi_i - phi_r. offset, in (-1, 1), is where across its width the fibre is hit, in radii;
-from there its surface reflects to phi = -2 asin(offset). precompute/examples/chiang2016.py is a whole file,
-made from a paper in 40 lines.
-other data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
-CSV, or arrays of these names as npz. Coordinates that repeat are a grid, which must have each point once, and
-value is a density there. Otherwise each row is a draw, and value, which may be left out, its weight. A grid
-with a column offset (within [-1, 1]: where across its width the fibre is hit), or an npz whose value has
-four axes (offset, theta_r, theta_i, phi), becomes a family: a model file for each lobe, and a text file of
-their weights and turns, in a directory (see the module hairlut.fit.familyfiles)."""
+  hairlut fit my_hair.py --json --plot my_hair.png > my_hair.json
+  hairlut fit goniometer.csv --measure solid-angle --out luts
+
+my_hair.py defines
+
+    def bsdf(theta_r, theta_i, phi):            # or bsdf(theta_r, theta_i, phi, offset)
+        ...
+        return f
+
+with f per steradian and without the cosine, as in L = integral of f L_i cos(theta_i) domega: the sampler
+draws f cos(theta_i). The arguments are numpy arrays that broadcast, in radians: the inclinations of the
+viewer and of the light from the plane normal to the fibre, and phi = phi_i - phi_r. offset, in (-1, 1), is
+where across its width the fibre is hit, in radii; from there its surface reflects to phi = -2 asin(offset). A
+hair whose highlights depend on it is drawn with the offset known. precompute/examples/chiang2016.py is a
+whole file, made from a paper in 40 lines.
+
+Other data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
+CSV, or arrays of these names as npz; offset, within [-1, 1], is one column more. Coordinates that repeat are
+a grid, which must have each point once, and value is a density there. Otherwise each row is a draw, and
+value, which may be left out, its weight."""
 
 
 def add_parser(subparsers) -> argparse.ArgumentParser:
@@ -47,14 +47,13 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         subparsers,
         "fit",
         help="fit a sampler to a hair's BSDF, or to measured scattering",
-        description="Fits lobes to the BSDF that a Python file defines, bakes them, measures the result, and "
-        "writes a directory that the C library loads. From a grid or draws (CSV, npz) it writes model files "
-        "for hairlut bake: Gaussians, and the masses of the data's own cells.",
+        description="Fits a mixture of lobes to a hair's BSDF, to a grid of it, or to draws from it, bakes "
+        "it, and measures the textures' relative variance and largest weight where they were not fitted to.",
         epilog=EXAMPLES,
     )
     parser.add_argument("data", type=Path, help="a Python file that defines bsdf, or a CSV or npz file")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="default: luts, or fits for CSV and npz")
-    parser.add_argument("--name", help="name of the model (default: that of the data file)")
+    parser.add_argument("--out", type=Path, default=Path("luts"), metavar="DIR", help="default: luts")
+    parser.add_argument("--name", help="name of the model (default: that of the file)")
     parser.add_argument(
         "--measure",
         choices=("angle", "solid-angle"),
@@ -62,10 +61,7 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         help="what a grid's values are densities in: theta_i and phi, or steradians (default: angle)",
     )
     parser.add_argument(
-        "--lobes",
-        metavar="K",
-        help=f"how many lobes a BSDF takes, 1 to {MAX_LOBES} (default: as many as gain); for data, "
-        f"what it holds: {', '.join(PARTS)} (default: both)",
+        "--lobes", type=int, metavar="K", help=f"how many lobes, 1 to {MAX_LOBES} (default: as many as gain)"
     )
     parser.add_argument(
         "--tolerance",
@@ -81,29 +77,10 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         metavar="SECONDS",
         help="time after which the best fit so far is taken (default: %(default)g)",
     )
-    parser.add_argument("--json", action="store_true", help="print a BSDF's result as JSON, and nothing else")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON, and nothing else")
     parser.add_argument(
-        "--rows",
-        type=int,
-        default=ROWS,
-        help="rows of theta_r that samples are gathered in (default: %(default)s)",
+        "--plot", type=Path, metavar="FILE", help="draw the fit and its errors to a PNG, SVG or PDF"
     )
-    parser.add_argument(
-        "--lobes-per-offset",
-        type=int,
-        default=FAMILY_LOBES,
-        metavar="K",
-        help="highlights of a family, each a product of inclination and azimuth (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--shapes-per-lobe",
-        type=int,
-        default=SHAPES,
-        metavar="S",
-        help="azimuths of each lobe of a family, each for a part of the offsets: more where highlights "
-        "change their shape over the offset, not just their place (default: %(default)s)",
-    )
-    parser.add_argument("--no-plot", action="store_true", help="write no picture (matplotlib is not needed)")
     return parser
 
 
@@ -111,86 +88,7 @@ def run(args: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import Progress
 
-    if args.data.suffix == ".py":
-        return _bsdf(args)
-    args.out = args.out or Path("fits")
-    args.lobes = args.lobes or "both"
-    if args.lobes not in PARTS:
-        raise HairlutError(f"--lobes {args.lobes}: expected one of {', '.join(PARTS)}")
-    if args.rows < 2:
-        raise HairlutError(f"--rows {args.rows}: expected 2 or more")
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("reading", total=1.0)
-
-        def report(stage: str, share: float) -> None:
-            progress.update(task, description=stage, completed=share)
-
-        data = read(args.data)
-        print(f"{args.data}: {data}")
-        said, paths = (_model if data.offset is None else _family)(data, args, report)
-    print(said)
-    print("\n" + "\n".join(map(str, paths)))
-    return OK
-
-
-def _model(data: Grid | Draws, args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
-    """Both models of one distribution: what to say, and what was written."""
-    from ..fit.distribution import of_data
-    from ..fit.files import text, write_all
-    from ..fit.model import fit
-
-    name = args.name or args.data.stem
-    result = fit(of_data(data, args.measure == "solid-angle", args.rows, CELLS), args.lobes, report=report)
-    paths = list(write_all(result, args.out, name))
-    if not args.no_plot:
-        report("plotting", 0.0)
-        paths.append(_plot(result, args.out / f"{name}_fit.png", name))
-    return text(result), paths
-
-
-def _family(data: Grid | Draws, args: argparse.Namespace, report: Report) -> tuple[str, list[Path]]:
-    """The family of a grid over offsets, likewise."""
-    from ..fit.family import fit_family
-    from ..fit.familyfiles import text, write_family
-    from ..fit.offsets import of_data
-
-    if args.lobes != "both":
-        raise HairlutError(f"--lobes {args.lobes}: {args.data} has offsets: use --lobes-per-offset")
-    if isinstance(data, Draws):
-        raise HairlutError(f"{args.data}: draws with offsets: expected a grid of values over the offset")
-    family = fit_family(
-        of_data(data, args.measure == "solid-angle"), args.lobes_per_offset, args.shapes_per_lobe, report
-    )
-    folder = args.out / (args.name or args.data.stem)
-    written = write_family(family, folder)
-    return text(family), [folder, written[-1]]
-
-
-def _plot(result, path: Path, name: str) -> Path:
-    from ..files import write_whole
-    from ..fit.plot import plot
-
-    try:
-        return write_whole(path, plot(result, name))
-    except ImportError as error:
-        raise HairlutError(
-            f"{error.name} is missing: pip install 'hairlut[report]', or use --no-plot"
-        ) from None
-    return path
-
-
-def _bsdf(args: argparse.Namespace) -> int:
-    """Fits, bakes and measures a BSDF."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    count = _checked(args)
-    name, out = args.name or args.data.stem, args.out or Path("luts")
-
-    from ..exr import write_model
-    from ..fit import bsdf, doubts, hair, refine, says
-
+    name = _checked(args)
     start = perf_counter()
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
@@ -199,33 +97,77 @@ def _bsdf(args: argparse.Namespace) -> int:
         def report(stage: str, share: float) -> None:
             progress.update(task, description=stage, completed=share)
 
-        given = hair.of_density(*bsdf.load(args.data))
-        found = refine.fit(given, name, args.tolerance, count, args.budget, report)
-    for doubt in doubts.doubts(given, found.promised):
+        model, text, told, doubts = _fitted(args, name, report)
+    for doubt in doubts:
         print(f"hairlut: {args.data}: warning: {doubt}", file=sys.stderr)
+    from ..exr import write_model
+
     seconds = perf_counter() - start
-    paths = write_model(out / name, says.with_errors(found))
+    paths = write_model(args.out / name, model)
     size = sum(path.stat().st_size for path in paths)
     if args.json:
-        told = says.data(found, args.tolerance, seconds)
-        print(json.dumps({"data": str(args.data), "model": str(out / name), "bytes": size, **told}, indent=1))
+        about = {"model": str(args.out / name), "bytes": size, "seconds": seconds}
+        print(json.dumps({**about, **told}, indent=1))
         return OK
-    print(says.text(found, args.tolerance, seconds))
-    print(f"\n{out / name}: {len(paths)} textures, {size / 1024:.0f} KB")
+    print(text)
+    print(f"\n{args.out / name}: {len(paths)} textures, {size / 1024:.0f} KB, in {seconds:.1f} s")
     return OK
 
 
-def _checked(args: argparse.Namespace) -> int | None:
-    """How many lobes a BSDF is to take, None to choose; HairlutError for options that make no sense."""
-    name = args.name or args.data.stem
-    if Path(name).name != name or name.startswith((".", "-")):
+def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
+    """(model, text for a person, data for a script, warnings)."""
+    from ..fit import bsdf, hair, says
+    from ..fit.read import Draws, read
+
+    if args.data.suffix == ".py":
+        return _of_hair(hair.of_density(*bsdf.load(args.data)), "a BSDF", args, name, report)
+    data = read(args.data)
+    if isinstance(data, Draws):
+        from ..fit import drawn
+
+        if args.plot:
+            raise HairlutError("--plot: draws have no density to plot: leave it out")
+        report("cross-validating", 0.0)
+        found = drawn.fit(data, name, args.lobes)
+        text, told = says.drawn_text(args.data, data, found), says.drawn_data(data, found)
+        return says.with_error(found), text, told, []
+    from ..fit import grid
+
+    return _of_hair(grid.of_grid(data, args.measure == "solid-angle"), data, args, name, report)
+
+
+def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: Report) -> tuple:
+    from ..fit import doubts, refine, says
+
+    found = refine.fit(given, name, args.tolerance, args.lobes, args.budget, report)
+    if args.plot:
+        _plot(given, found, args.plot, name)
+    told = {"data": str(what), **says.data(found, args.tolerance)}
+    text = f"{args.data}: {what}\n{says.text(found, args.tolerance)}"
+    return says.with_errors(found), text, told, doubts.doubts(given, found.promised)
+
+
+def _plot(given, found, path: Path, name: str) -> None:
+    from ..files import write_whole
+
+    try:
+        from ..fit.plot import plot
+    except ImportError as error:
+        raise HairlutError(f"--plot: {error.name} is missing: pip install 'hairlut[report]'") from None
+    write_whole(path, plot(given, found, name, path.suffix.removeprefix(".") or "png"))
+
+
+def _checked(args: argparse.Namespace) -> str:
+    """The model's name; HairlutError for options that make no sense."""
+    name = args.data.stem if args.name is None else args.name
+    if not name or Path(name).name != name or name.startswith((".", "-")):
         raise HairlutError(f"--name {name}: expected the name of a directory")
     for option in ("tolerance", "budget"):
         value = getattr(args, option)
         if not (math.isfinite(value) and value > 0):
             raise HairlutError(f"--{option} {value}: expected a number above 0")
-    if args.lobes is None:
-        return None
-    if not (args.lobes.isdecimal() and 1 <= int(args.lobes) <= MAX_LOBES):
+    if args.lobes is not None and not 1 <= args.lobes <= MAX_LOBES:
         raise HairlutError(f"--lobes {args.lobes}: expected a number from 1 to {MAX_LOBES}")
-    return int(args.lobes)
+    if args.plot and args.plot.suffix not in (".png", ".svg", ".pdf"):
+        raise HairlutError(f"--plot {args.plot}: expected a name that ends in .png, .svg or .pdf")
+    return name

@@ -1,6 +1,7 @@
-"""Tables fitted to what a renderer can evaluate or draw: one model, or one for each offset of the fibre.
+"""From what a renderer can evaluate or draw to a baked mixture of lobes.
 
-read takes draws and grids from files, distribution and offsets make masses of cells of them, decompose splits
-them into lobes, model and family fit those, files and familyfiles write model files that `hairlut bake`
-reads.
+bsdf runs a user's function, read takes grids and draws from files, and hair, grid and draws make densities
+or cells of them. factor, highlights, turning and lobesfit find lobes, smooth and tables bake them, promise
+measures the textures, and refine does all that again with finer cells until it is good enough. says and plot
+tell.
 """

@@ -26,8 +26,9 @@ MEANING = {
 
 
 def doubts(hair: Hair, loss: Losses) -> list[str]:
-    """Warnings about a hair, of whose light `loss` has the sums."""
-    return [text for text in (_energy(loss), _reciprocity(hair)) if text]
+    """Warnings about a hair, of whose light `loss` has the sums. A grid may be in any unit."""
+    energy = _energy(loss) if hair.nodes is None else ""
+    return [text for text in (energy, _reciprocity(hair)) if text]
 
 
 def _energy(loss: Losses) -> str:

@@ -27,6 +27,9 @@ FILL = 1e-3
 """Share of each inclination that keeps the shape of all light, and of each azimuth that stays even: without
 them a product has gaps where another has its peak, and a table spends its columns on them."""
 WEAK = 1e-4  # columns of less than this part of the brightest one's light start nothing
+ALONE = 60
+"""Steps of the azimuths alone: with those that every product starts from, the brightest highlight would draw
+all inclinations to its own."""
 FIRST_STEPS = 150
 
 
@@ -49,6 +52,7 @@ def products(p: Array, count: int, steps: int = FIRST_STEPS) -> tuple[Array, Arr
     light = p.sum(axis=1, keepdims=True)
     theta = 0.98 * most_different(p, count) + 0.02 * light / light.sum()
     azimuth = np.tile(p.sum(axis=0) / count, (count, 1))
+    theta, azimuth = update(p, theta, azimuth, ALONE, moving=False)
     return update(p, theta, azimuth, steps)
 
 
@@ -66,14 +70,15 @@ def most_different(p: Array, count: int) -> Array:
     return columns[:, chosen]
 
 
-def update(p: Array, theta: Array, azimuth: Array, steps: int) -> tuple[Array, Array]:
-    """Multiplicative updates of theta (n, K) and azimuth (K, C)."""
+def update(p: Array, theta: Array, azimuth: Array, steps: int, moving: bool = True) -> tuple[Array, Array]:
+    """Multiplicative updates of azimuth (K, C) and, if it is moving, of theta (n, K)."""
     light = p.sum(axis=1, keepdims=True) / p.sum()
     for _ in range(steps):
         e = excess(p, theta @ azimuth)
-        gain = (e @ azimuth.T) / np.maximum(azimuth.sum(axis=1), TINY)
+        gain = (e @ azimuth.T) / np.maximum(azimuth.sum(axis=1), TINY) if moving else None
         azimuth = azimuth * (theta.T @ e) ** (1 / POWER)
-        theta = filled(theta * gain ** (1 / POWER), light)
+        if moving:
+            theta = filled(theta * gain ** (1 / POWER), light)
         azimuth *= p.sum() / azimuth.sum()
     return theta, azimuth
 

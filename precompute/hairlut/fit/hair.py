@@ -28,10 +28,14 @@ class Hair:
     offsets: bool
     mirrored: bool
     theta_r: tuple[float, float] = (-MOST, MOST)
+    intervals: int = 12
+    nodes: Array | None = None
 
     def angles(self, count: int) -> Array:
         """(count,) angles asin(offset) of nodes, denser towards the rim, where a fibre's reflectance rises
         steeply; 0 alone for a hair without offsets."""
+        if self.nodes is not None:
+            return self.nodes
         if not self.offsets:
             return np.zeros(1)
         x = np.linspace(0.0 if self.mirrored else -1.0, 1.0, count)

@@ -18,9 +18,11 @@ import numpy as np
 
 from ..lobes import Array
 from .factor import FILL, POWER, TINY, excess, filled, products, update, variance
+from .highlights import Highlight, highlights
 from .turning import TWO_PI, track, turned
 
-FIRST_SWEEPS, SWEEPS = 60, 30
+FIRST_SWEEPS, TRIAL_SWEEPS, SWEEPS = 60, 16, 30
+SAME_SWEEPS = 10
 FREE_STEPS = 40
 FRESH = 0.02  # part of what the last theta_r lets expect that is replaced by the new one's light
 FAINT = 1e-3  # a lobe of this share is half what was expected
@@ -67,30 +69,82 @@ class Row:
 def first_row(mass: Array, angle: Array, count: int, turning: bool) -> Row:
     """The lobes of the light mass (N, n, m), which sums to 1 at each offset, from nothing. angle (N,): of the
     offsets around the fibre, rad."""
+    row = None
+    for _ in range(count):
+        row = one_more(row, mass, angle, turning)
+    return row
+
+
+def one_more(fewer: Row | None, mass: Array, angle: Array, turning: bool) -> Row:
+    """As many lobes as `fewer` and one: the best of what comes from free products, from their highlights, and
+    from giving a lobe of `fewer` two shapes."""
+    count = 1 if fewer is None else fewer.share.shape[1] + 1
     theta, flat = products(_flat(mass), count)
     light, each = _by_offset(flat, len(mass))
-    turn = np.zeros(light.shape)
-    if turning:
-        shape = _strongest(light, each)
-        turn = np.stack([track(each[:, k], light[:, k], shape[k]) for k in range(count)], axis=1)
-    return improved(_laid(theta, light, each, turn), mass, angle, FIRST_SWEEPS, turning)
+    if not turning:
+        return improved(_laid(theta, light, each, np.zeros(light.shape)), mass, angle, FIRST_SWEEPS, turning)
+    shape = _strongest(light, each)
+    turn = np.stack([track(each[:, k], light[:, k], shape[k]) for k in range(count)], axis=1)
+    starts = [
+        _laid(theta, light, each, turn),
+        _of_highlights(highlights(theta, light[..., None] * each)[:count]),
+        *([_split(fewer, mass)] if fewer is not None else []),
+    ]
+    tried = [improved(start, mass, angle, TRIAL_SWEEPS, turning) for start in starts]
+    best = min(tried, key=lambda row: row.variance(mass))
+    return improved(best, mass, angle, FIRST_SWEEPS - TRIAL_SWEEPS, turning)
+
+
+def _split(row: Row, mass: Array) -> Row:
+    """The row with two shapes for the lobe whose azimuth changes most over the offset."""
+    flat = row.azimuths.transpose(1, 0, 2).reshape(row.share.shape[1], -1)
+    _, flat = update(_flat(mass), row.theta, flat, FREE_STEPS, moving=False)
+    light, each = _by_offset(flat, len(mass))
+    each = turned(each, -row.turn)
+    change = (light * variance(each, row.phi[None], 2)).sum(axis=0)
+    k = int(change.argmax())
+    shapes, amounts = products((light[:, k, None] * each[:, k]).T, 2)  # (m, 2), (2, N)
+    amounts = np.maximum(amounts, TINY)
+    part = amounts / amounts.sum(axis=0)
+    share = np.concatenate([row.share, row.share[:, [k]] * part[1][:, None]], axis=1)
+    share[:, k] *= part[0]
+    phi = np.concatenate([row.phi, shapes[:, 1][None]])
+    phi[k] = shapes[:, 0]
+    theta = np.concatenate([row.theta, row.theta[:, [k]]], axis=1)
+    return Row(theta, _even(phi), share, np.concatenate([row.turn, row.turn[:, [k]]], axis=1))
+
+
+def _of_highlights(found: list[Highlight]) -> Row:
+    """A lobe for each highlight."""
+    azimuths = np.stack([one.light for one in found], axis=1)
+    light = np.maximum(azimuths.sum(axis=2), TINY)
+    turn = np.stack([one.turn for one in found], axis=1)
+    return _laid(np.stack([one.theta for one in found], axis=1), light, azimuths / light[..., None], turn)
 
 
 def next_row(expected: Row, mass: Array, angle: Array, turning: bool) -> Row:
     """The lobes of the light mass of the next theta_r, where the last ones let expect such."""
+    return improved(_moved(expected, mass, turning, True), mass, angle, SWEEPS, turning, expected)
+
+
+def same_shapes(expected: Row, mass: Array, angle: Array, turning: bool) -> Row:
+    """Shares and turns for lobes that keep their shapes."""
+    there = _moved(expected, mass, turning, False)
+    return improved(there, mass, angle, SAME_SWEEPS, turning, there, shapes=False)
+
+
+def _moved(expected: Row, mass: Array, turning: bool, moving: bool) -> Row:
+    """The expected lobes with the shares and turns that free azimuths have; moving: with free
+    inclinations."""
     light = mass.sum(axis=(0, 2))[:, None] / len(mass)
-    theta = (1 - FRESH) * expected.theta + FRESH * light
+    theta = (1 - FRESH) * expected.theta + FRESH * light if moving else expected.theta
     fresh = FRESH / len(expected.phi) * mass.sum(axis=1, keepdims=True)
     azimuths = (1 - FRESH) * expected.azimuths + fresh
-    theta, flat = update(
-        _flat(mass), theta, azimuths.transpose(1, 0, 2).reshape(len(expected.phi), -1), FREE_STEPS
-    )
-    light, each = _by_offset(flat, len(mass))
-    turn = expected.turn
-    if turning:
-        turn = turn + _towards(each, light, expected)
-    row = replace(expected, share=light / light.sum(axis=1, keepdims=True), turn=turn)
-    return improved(row, mass, angle, SWEEPS, turning, expected)
+    flat = azimuths.transpose(1, 0, 2).reshape(len(expected.phi), -1)
+    _, flat = update(_flat(mass), theta, flat, FREE_STEPS, moving)
+    share, each = _by_offset(flat, len(mass))
+    turn = expected.turn + _towards(each, share, expected) if turning else expected.turn
+    return replace(expected, share=share / share.sum(axis=1, keepdims=True), turn=turn)
 
 
 def improved(

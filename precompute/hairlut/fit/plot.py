@@ -1,54 +1,81 @@
-"""A picture of a fit: the data's marginals, its masses and Gaussians, and what they cost at each theta_r."""
+# SPDX-License-Identifier: BSD-3-Clause
+"""A picture of a fit: the hair and its textures, their cost over the viewers, and where weights are large."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from .. import figures
-from .decompose import Split
-from .files import HUGE, variances
-from .model import Fit, cells
+from ..lobes import HALF_PI, Array
+from . import promise
+from .hair import Hair
+from .refine import Fitted
+from .turning import TWO_PI
 
-SHOWN = 4
+VIEWERS = -60.0, 0.0, 60.0  # deg
+OFFSET = 0.4  # of the viewers' light, and of the map
+POINTS = 361, 360
+FIREFLY = 10.0
 
 
-def plot(fit: Fit, title: str) -> bytes:
-    """The picture as PNG."""
-    data = fit.data
-    rows = np.unique(np.linspace(0, len(data.theta_r) - 1, SHOWN).round().astype(int))
-    masses = fit.split.drawn(data)
-    edges = data.theta_edges, data.phi_edges, data.theta_edges
-    split = Split(
-        fit.split.direct_weight,
-        *(cells(g.mean, g.sigma, e) for g, e in zip(fit.gaussians, edges, strict=True)),
-    )
-    gaussians = split.drawn(data, floor=0.0)
-    figure, axes = figures.new(2, len(rows) + 1, size=(3.2 * (len(rows) + 1), 5.6), squeeze=False)
-    for column, j in enumerate(rows):
-        for axis, name, edge, over in ((0, "theta_i", data.theta_edges, 1), (1, "phi", data.phi_edges, 0)):
-            ax = axes[axis, column]
-            middle, width = np.degrees((edge[1:] + edge[:-1]) / 2), np.diff(edge)
-            ax.fill_between(middle, data.mass[j].sum(over) / width, step="mid", color="0.85", label="data")
-            ax.plot(middle, masses[j].sum(over) / width, color=figures.BLUE, label="masses")
-            ax.plot(middle, gaussians[j].sum(over) / width, color=figures.RED, ls="--", label="Gaussians")
-            ax.set(
-                xlabel=f"{name} [deg]",
-                title=f"theta_r = {np.degrees(data.theta_r[j]):.3g} deg",
-                ylim=(0, None),
-            )
-    axes[0, 0].set_ylabel("density per rad")
-    axes[1, 0].set_ylabel("density per rad")
+def plot(hair: Hair, found: Fitted, title: str, kind: str = "png") -> bytes:
+    """The picture as a file of this kind."""
+    figure, axes = figures.new(2, len(VIEWERS) + 1, size=(14, 6), squeeze=False)
+    theta_i = np.linspace(-HALF_PI + 1e-3, HALF_PI - 1e-3, POINTS[0])
+    phi = (np.arange(POINTS[1]) + 0.5) * (TWO_PI / POINTS[1])
+    offset = min(hair.angles(found.axes.offset), key=lambda angle: abs(np.sin(angle) - OFFSET))
+    for column, degrees in enumerate(VIEWERS):
+        p, q = _densities(hair, found, np.radians(degrees), np.sin(offset), theta_i, phi)
+        _marginals(axes[:, column], theta_i, phi, p, q)
+        axes[0, column].set_title(f"theta_r = {degrees:.0f} deg")
     axes[0, 0].legend(fontsize="small")
-    _costs(fit, axes[0, -1])
-    axes[1, -1].legend(*axes[0, -1].get_legend_handles_labels(), loc="upper center", frameon=False)
-    axes[1, -1].axis("off")
-    figure.suptitle(f"{title}, direct weight {fit.split.direct_weight:.2f}")
-    return figures.encoded(figure)
+    _losses(axes[0, -1], found)
+    _weights(axes[1, -1], theta_i, phi, p, q)
+    figure.suptitle(
+        f"{title}: offset {np.sin(offset):.2g}, relative variance {found.promised.variance.mean():.4f}"
+    )
+    return figures.encoded(figure, kind)
 
 
-def _costs(fit: Fit, ax) -> None:
-    looks = ((figures.GREY, ":"), (figures.GREEN, "-."), (figures.BLUE, "-"), (figures.RED, "--"))
-    for (name, values), (colour, style) in zip(variances(fit).items(), looks, strict=True):
-        shown = np.clip(values, 1e-4, HUGE)
-        ax.semilogy(np.degrees(fit.data.theta_r), shown, style, color=colour, label=name)
-    ax.set(xlabel="theta_r [deg]", title="relative variance", ylim=(1e-4, HUGE))
+def _densities(
+    hair: Hair, found: Fitted, theta_r: float, offset: float, theta_i: Array, phi: Array
+) -> tuple[Array, Array]:
+    """(n, m) of the hair, normalised, and of its textures."""
+    theta_r = float(np.clip(theta_r, *hair.theta_r))
+    p = np.broadcast_to(hair.density(theta_r, theta_i[:, None], phi, offset), (theta_i.size, phi.size))
+    q = promise.drawn(found.model, theta_r, np.array([offset]), theta_i, phi)[0]
+    return p * (q.sum() / max(p.sum(), 1e-300)), q
+
+
+def _marginals(axes, theta_i: Array, phi: Array, p: Array, q: Array) -> None:
+    for ax, name, x, over, step in (
+        (axes[0], "theta_i", theta_i, 1, TWO_PI / phi.size),
+        (axes[1], "phi", phi, 0, np.pi / theta_i.size),
+    ):
+        ax.fill_between(np.degrees(x), p.sum(axis=over) * step, color="0.85", label="hair")
+        ax.plot(np.degrees(x), q.sum(axis=over) * step, color=figures.BLUE, label="textures")
+        ax.set(xlabel=f"{name} [deg]", ylim=(0, None))
+    axes[0].set_ylabel("density per rad")
+
+
+def _losses(ax, found: Fitted) -> None:
+    loss = found.promised
+    order = np.argsort(loss.theta_r)
+    ax.semilogy(np.degrees(loss.theta_r[order]), loss.variance.mean(axis=1)[order], ".", color=figures.BLUE)
+    ax.semilogy(np.degrees(loss.theta_r[order]), loss.weight.max(axis=1)[order], ".", color=figures.RED)
+    ax.set(xlabel="theta_r [deg]", title="variance (blue), largest weight (red)")
+
+
+def _weights(ax, theta_i: Array, phi: Array, p: Array, q: Array) -> None:
+    light = p / np.cos(theta_i)[:, None]
+    weight = np.where(light > promise.BRIGHT * light.max(), p / np.maximum(q, 1e-300), np.nan)
+    image = ax.pcolormesh(
+        np.degrees(phi),
+        np.degrees(theta_i),
+        np.log10(weight),
+        vmin=-1,
+        vmax=np.log10(FIREFLY),
+        cmap="cividis",
+    )
+    ax.set(xlabel="phi [deg]", ylabel="theta_i [deg]", title=f"log10 of the weight, {VIEWERS[-1]:.0f} deg")
+    ax.figure.colorbar(image, ax=ax)

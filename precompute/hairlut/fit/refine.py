@@ -21,23 +21,25 @@ from ..model import BakedLobe, BakedModel
 from . import cells, promise, smooth, tables
 from .cells import Cells
 from .hair import Hair
-from .lobesfit import Row, first_row, improved, next_row
+from .lobesfit import Row, first_row, next_row, one_more, same_shapes
 from .turning import TWO_PI
 
 MAX_LOBES = 8
-GAIN = 0.002
-"""A lobe is worth its memory if it lowers V by this much, or by a quarter."""
+GAIN = 0.001
+"""A lobe is worth its memory if it lowers V by this much, and"""
+PART = 0.2
+"""by this part of the least V of all numbers of lobes."""
 HEAVIEST = 10.0  # a weight that is a firefly
-FITTED_OFFSETS = 9  # offsets by which shapes are fitted; shares and turns are at all
-LAST_SWEEPS = 10
+FITTED_OFFSETS = 13  # offsets by which shapes are fitted; shares and turns are at all
 START = {"theta_r": 37, "offset": 11, "theta_i": 32}
 LIMITS = {"theta_r": 145, "offset": 65, "theta_i": 128, "phi": 512}
 TABLE_PART = 0.08  # of the tolerance that each table may lose
 SHARE_OF_AXIS = 0.2  # of the tolerance above which an axis is refined
-WEIGHT_PARTS = 5.0  # what a weight that is too large counts
+WEIGHT_PARTS = 5.0  # what a weight that is too large counts, or a viewer whose V is
 LARGEST_STEP = 2.0
-VIEWERS, OFFSETS = 16, 8
-REPEATS = 6
+VIEWERS, OFFSETS = 24, 8
+REPEATS = 4
+ROWS = 9  # on and between which losses are told apart
 
 
 @dataclass(frozen=True)
@@ -52,13 +54,15 @@ class Axes:
 
 @dataclass(frozen=True)
 class Fitted:
-    """A baked model; reach: V that so many lobes have on the cells they were fitted to; loss: V and largest
-    weight by where they were measured ("nodes", "theta_r", "offset": between those); promised: losses at
-    random viewers, in `repeats` independent groups of as many."""
+    """A baked model; reach: V that so many lobes have on the cells they were fitted to, the mean over
+    theta_r and the worst; loss: V and largest weight by where they were measured ("nodes", "theta_r",
+    "offset": between those); promised: losses at random viewers, in `repeats` independent groups of as
+    many."""
 
     model: BakedModel
     axes: Axes
     reach: float
+    worst_reach: float
     loss: dict[str, tuple[float, float]]
     promised: promise.Losses
     repeats: int = 1
@@ -89,8 +93,11 @@ def fit(hair: Hair, name: str, tolerance: float, lobes: int | None, budget: floa
 
 def limits(found: Fitted, tolerance: float) -> list[str]:
     """What keeps a fit from the tolerance: the names of axes, "lobes", or nothing."""
-    reached = found.promised.variance.mean() <= found.reach + tolerance
-    if reached and found.promised.weight.max() <= HEAVIEST:
+    viewers = found.promised.variance.mean(axis=1)
+    means = [viewers.mean(), *(variance for variance, _ in found.loss.values())]
+    weights = [found.promised.weight.max(), *(weight for _, weight in found.loss.values())]
+    near = max(means) <= found.reach + tolerance and viewers.max() <= found.worst_reach + 2 * tolerance
+    if near and max(weights) <= HEAVIEST:
         return []
     return list(_standing_out(found, tolerance)) or ["lobes"]
 
@@ -110,13 +117,19 @@ def _measured(found: Fitted, hair: Hair, random: np.random.Generator, report: Re
 
 
 def _score(found: Fitted, tolerance: float) -> float:
-    return found.promised.variance.mean() + tolerance * max(0.0, found.promised.weight.max() / HEAVIEST - 1)
+    viewers = found.promised.variance.mean(axis=1)
+    return (
+        viewers.mean() + viewers.max() / 4 + tolerance * max(0.0, found.promised.weight.max() / HEAVIEST - 1)
+    )
 
 
 def _first_axes(hair: Hair) -> Axes:
     theta_r, offset = hair.rows(9)[[1, 4, 7]], np.sin(hair.angles(5))[:4]
     offsets = START["offset"] * (1 if hair.mirrored else 2) - (not hair.mirrored) if hair.offsets else 1
-    return Axes(START["theta_r"], offsets, START["theta_i"], cells.phi_count(hair.density, theta_r, offset))
+    if hair.nodes is not None:
+        offsets = len(hair.nodes)
+    rows = hair.intervals * -(-(START["theta_r"] - 1) // hair.intervals) + 1
+    return Axes(rows, offsets, START["theta_i"], cells.phi_count(hair.density, theta_r, offset))
 
 
 def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
@@ -125,13 +138,15 @@ def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
     data = _cells(hair, theta_r, hair.angles(axes.offset), axes)
     angle = hair.angles(axes.offset)
     variance: list[float] = []
+    rows: list[Row | None] = [None] * len(data.mass)
     for count in range(1, MAX_LOBES + 1):
         report("choosing lobes", count / MAX_LOBES)
-        variance.append(np.mean([first_row(m, angle, count, hair.offsets).variance(m) for m in data.mass]))
+        rows = [one_more(row, mass, angle, hair.offsets) for row, mass in zip(rows, data.mass, strict=True)]
+        variance.append(np.mean([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)]))
         if variance[-1] < GAIN:
             break
     least = min(variance)
-    return next(k + 1 for k, v in enumerate(variance) if v <= least + max(GAIN, least / 4))
+    return next(k + 1 for k, v in enumerate(variance) if v <= least + max(GAIN, PART * least))
 
 
 def _cells(hair: Hair, theta_r: Array, angle: Array, axes: Axes) -> Cells:
@@ -157,7 +172,7 @@ def _fit_once(
     angle = hair.angles(axes.offset)
     data = _cells(hair, hair.rows(axes.theta_r), angle, axes)
     rows = fit_rows(data, angle, count, hair.offsets, lambda share: report("fitting lobes", share))
-    reach = float(np.mean([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)]))
+    reach = np.array([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)])
     model = bake(data, rows, name, hair.mirrored, TABLE_PART * tolerance)
     report("measuring", 0.0)
     loss = _losses(hair, model, axes, random)
@@ -165,7 +180,7 @@ def _fit_once(
     promised = promise.losses(model, hair.density, theta_r, offset, 2 * axes.phi, random)
     if not np.isfinite(promised.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
-    return Fitted(model, axes, reach, loss, promised)
+    return Fitted(model, axes, float(reach.mean()), float(reach.max()), loss, promised)
 
 
 def fit_rows(
@@ -210,8 +225,7 @@ def _at_all(row: Row, mass: Array, some: Array, angle: Array, turning: bool) -> 
         np.stack([np.interp(angle, some, part[:, k]) for k in range(part.shape[1])], axis=1)
         for part in (row.share, row.turn)
     )
-    there = replace(row, share=share, turn=turn)
-    return improved(there, mass, angle, LAST_SWEEPS, turning, there, shapes=False)
+    return same_shapes(replace(row, share=share, turn=turn), mass, angle, turning)
 
 
 def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -> BakedModel:
@@ -242,26 +256,39 @@ def _losses(
 ) -> dict[str, tuple[float, float]]:
     """V and the largest weight on nodes, between rows, and between offsets."""
     theta_r, angle = hair.rows(axes.theta_r), hair.angles(axes.offset)
-    rows = np.linspace(0, axes.theta_r - 2, 9).round().astype(int)
+    rows = ((np.arange(ROWS) + 0.5) * ((axes.theta_r - 1) / ROWS) - 0.5).round().astype(int)
     nodes = np.unique(np.linspace(0, max(axes.offset - 2, 0), 5).round().astype(int))
     at = {
         "nodes": (theta_r[rows + 1], angle[nodes]),
         "theta_r": ((theta_r[rows] + theta_r[rows + 1]) / 2, angle[nodes]),
     }
-    if hair.offsets:
+    models = {}
+    if hair.offsets and hair.nodes is None:
         at["offset"] = theta_r[rows + 1], (angle[nodes] + angle[nodes + 1]) / 2
+    elif axes.offset >= 5:
+        at["offset"] = theta_r[rows + 1], angle[1:-1:2]
+        models["offset"] = _without(model, np.arange(1, axes.offset - 1, 2))
     found = {}
     for where, (viewers, angles) in at.items():
         offset = np.tile(np.sin(angles), (len(viewers), 1))
-        loss = promise.losses(model, hair.density, viewers, offset, 2 * axes.phi, random)
+        loss = promise.losses(models.get(where, model), hair.density, viewers, offset, 2 * axes.phi, random)
         found[where] = float(loss.variance.mean()), float(loss.weight.max())
     return found
+
+
+def _without(model: BakedModel, offsets: Array) -> BakedModel:
+    """The model as if some nodes of its offsets were not there."""
+    mixture = model.mixture
+    axis = {name: np.delete(getattr(mixture, name), offsets, axis=-1) for name in ("offset", "share", "turn")}
+    return replace(model, mixture=replace(mixture, **axis))
 
 
 def _random_places(hair: Hair, random: np.random.Generator) -> tuple[Array, Array]:
     """Viewers (R,) and offsets (R, N), random in even strata."""
     low, high = hair.theta_r
     theta_r = low + (high - low) * (np.arange(VIEWERS) + random.random(VIEWERS)) / VIEWERS
+    if hair.nodes is not None:
+        return theta_r, np.tile(np.sin(hair.nodes), (VIEWERS, 1))
     if not hair.offsets:
         return theta_r, np.zeros((VIEWERS, 1))
     offset = (np.arange(OFFSETS) + random.random((VIEWERS, OFFSETS))) / OFFSETS
@@ -269,16 +296,19 @@ def _random_places(hair: Hair, random: np.random.Generator) -> tuple[Array, Arra
 
 
 def _standing_out(found: Fitted, tolerance: float) -> dict[str, float]:
-    """The axes that lose more than their part of the tolerance, and what they lose, in such parts. Where only
-    the weights are large, the axis between whose nodes they are largest."""
+    """The axes that lose more than their part of the tolerance, and what they lose, in such parts; theta_r
+    where a viewer loses too much; and the axis between whose nodes weights are too large."""
     base = found.loss["nodes"][0]
     lost = {axis: found.loss[axis][0] - base for axis in ("theta_r", "offset") if axis in found.loss}
     lost |= {"theta_i": (base - found.reach) / 2, "phi": (base - found.reach) / 2}
     parts = {axis: v / (SHARE_OF_AXIS * tolerance) for axis, v in lost.items()}
     parts = {axis: part for axis, part in parts.items() if part > 1}
-    if not parts and found.promised.weight.max() > HEAVIEST:
-        worst = max((w, axis) for axis, (_, w) in found.loss.items() if axis != "nodes")[1]
-        parts = {worst: WEIGHT_PARTS}
+    viewers = found.promised.variance.mean(axis=1)
+    if viewers.max() > found.worst_reach + 2 * tolerance and not parts:  # a few viewers, at grazing theta_r
+        parts["theta_r"] = WEIGHT_PARTS
+    weight, worst = max((weight, axis) for axis, (_, weight) in found.loss.items() if axis != "nodes")
+    if worst not in parts and (weight > HEAVIEST or (not parts and found.promised.weight.max() > HEAVIEST)):
+        parts[worst] = WEIGHT_PARTS
     return parts
 
 
@@ -290,16 +320,18 @@ def _finer(found: Fitted, hair: Hair, tolerance: float) -> Axes:
     counts = {}
     for axis, parts in _standing_out(found, tolerance).items():
         step = float(np.clip(parts**0.25, 1.25, LARGEST_STEP))
-        counts[axis] = _count(axis, getattr(axes, axis), step)
+        counts[axis] = _count(axis, getattr(axes, axis), step, hair)
+    if hair.nodes is not None:
+        counts.pop("offset", None)
     return replace(axes, **counts)
 
 
-def _count(axis: str, now: int, step: float) -> int:
+def _count(axis: str, now: int, step: float, hair: Hair) -> int:
     """A count about step times as large: with rows that tables can share out, and cells in eights."""
     if axis == "theta_r":
-        count = 12 * int(np.ceil((now - 1) * step / 12 - 1e-9)) + 1
+        count = hair.intervals * int(np.ceil((now - 1) * step / hair.intervals - 1e-9)) + 1
     elif axis == "offset":
         count = 2 * int(np.ceil((now - 1) * step / 2 - 1e-9)) + 1
     else:
         count = 8 * int(np.ceil(now * step / 8 - 1e-9))
-    return min(count, LIMITS[axis])
+    return count if count <= LIMITS[axis] else now

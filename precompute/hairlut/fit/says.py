@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from ..lobes import Array
 from ..model import BakedModel
+from .drawn import Drawn
+from .read import Draws
 from .refine import Fitted, limits
 
 BANDS = 12  # of theta_r in the text
@@ -54,7 +57,7 @@ def _bands(theta_r: Array, values: Array, reduce=np.mean) -> tuple[Array, Array]
     return (edges[used] + edges[used + 1]) / 2, np.array([reduce(values[at == b]) for b in used])
 
 
-def data(found: Fitted, tolerance: float, seconds: float) -> dict:
+def data(found: Fitted, tolerance: float) -> dict:
     """Everything as plain data."""
     loss = found.promised
     middles, variance = _bands(loss.theta_r, loss.variance.mean(axis=1))
@@ -73,17 +76,16 @@ def data(found: Fitted, tolerance: float, seconds: float) -> dict:
         "loss": {
             where: {"relative_variance": v, "largest_weight": w} for where, (v, w) in found.loss.items()
         },
-        "seconds": seconds,
     }
 
 
-def text(found: Fitted, tolerance: float, seconds: float) -> str:
+def text(found: Fitted, tolerance: float) -> str:
     """The fit for a terminal."""
     told, axes = promise(found), found.axes
     offsets = f", {axes.offset} offsets" if axes.offset > 1 else ""
     lines = [
         f"{len(found.model.lobes)} lobes from {axes.theta_r} theta_r{offsets}, {axes.theta_i} x {axes.phi} "
-        f"cells of theta_i and phi, in {seconds:.1f} s",
+        "cells of theta_i and phi",
         "",
         "relative variance of drawing this hair, the offset known (0 is perfect, 1 costs twice the samples),",
         "measured in the baked textures at random viewers, offsets and directions; weights where f is above",
@@ -111,3 +113,48 @@ def _verdict(found: Fitted, tolerance: float) -> str:
 def with_errors(found: Fitted) -> BakedModel:
     """The model with its measured errors, as its mixture's header has them."""
     return replace(found.model, errors={**found.model.errors, "mixture": asdict(promise(found))})
+
+
+# ---- draws
+
+
+def drawn_text(path: Path, data: Draws, found: Drawn) -> str:
+    """The fit of draws for a terminal."""
+    low, high = _interval(found)
+    lobes = len(found.model.lobes)
+    return "\n".join(
+        [
+            f"{path}: {data}",
+            f"{lobes} lobe{'s' if lobes > 1 else ''}: one more gains nothing beyond the noise of the draws",
+            "",
+            "relative variance of drawing this hair (0 is perfect, 1 costs twice the samples), measured on",
+            "draws left out",
+            f"{'variance':>14} {found.variance:10.4f} (95 %: {low:.4f} to {high:.4f})",
+            f"cells alone would show {found.apparent:.4f}: the rest is the noise of a finite number of draws",
+        ]
+    )
+
+
+def drawn_data(data: Draws, found: Drawn) -> dict:
+    """The same as plain data."""
+    low, high = _interval(found)
+    return {
+        "data": str(data),
+        "relative_variance": found.variance,
+        "low": low,
+        "high": high,
+        "noise": max(found.apparent - found.variance, 0.0),
+        "lobes": len(found.model.lobes),
+        "tables": {table.name: [table.width, table.height] for table in found.model.tables},
+    }
+
+
+def with_error(found: Drawn) -> BakedModel:
+    """The model with its cross-validated error, as its mixture's header has it."""
+    low, high = _interval(found)
+    errors = {"relative_variance": found.variance, "low": low, "high": high}
+    return replace(found.model, errors={**found.model.errors, "mixture": errors})
+
+
+def _interval(found: Drawn) -> tuple[float, float]:
+    return max(found.variance - QUANTILE * found.error, 0.0), found.variance + QUANTILE * found.error

@@ -17,7 +17,7 @@ TRUST = 0.005
 
 def turned(mass: Array, angle: Array) -> Array:
     """(..., m) masses turned by angle (...), rad: by cubics between the cells (Catmull and Rom), none below
-    0."""
+    the lesser of the two cells that it lies between: beside a steep peak a cubic would fall to 0."""
     cells = mass.shape[-1]
     steps = np.asarray(angle)[..., None] * (cells / TWO_PI)
     whole = np.floor(steps).astype(int)
@@ -32,7 +32,7 @@ def turned(mass: Array, angle: Array) -> Array:
         for k in (1, 0, -1, -2)
     )
     cubic = b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)))
-    return np.maximum(cubic, 0.0)
+    return np.maximum(cubic, np.minimum(b, c))
 
 
 def track(mass: Array, light: Array, shape: Array) -> Array:

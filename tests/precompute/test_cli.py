@@ -66,7 +66,7 @@ def test_inspect_prints_header_size_errors_and_rows(baked):
     path = out / "printed" / "direct_theta.exr"
     done = hairlut("inspect", path)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "16x8 texels, 512 bytes" in done.stdout
+    assert "16x8 texels, 1024 bytes" in done.stdout
     assert "hairlut.domain          -1.5707963267948966 1.5707963267948966" in done.stdout
     assert "error.relative_variance" in done.stdout
     rows = done.stdout.splitlines()[-8:]

@@ -34,6 +34,7 @@ REBAKE = "bake it again with 'hairlut bake'"
 MAGIC = b"\x76\x2f\x31\x01"
 MAX_SIDE = 4096
 DEEP = 0x800  # a flag of the version field
+MAX_NAME = 256  # bytes of a name in a header, with its zero
 COMPRESSIONS = ("NO_COMPRESSION", "RLE_COMPRESSION", "ZIPS_COMPRESSION", "ZIP_COMPRESSION")
 
 Attributes = dict[str, str | int]
@@ -91,7 +92,7 @@ def read_image(path: Path, expected: Callable[[Header], Sequence[str]]) -> tuple
         _check_image(header, names)
     except UnicodeDecodeError as error:  # of the binding, where it makes names and values Python's
         raise HairlutError(f"{path}: the header is damaged ({error.reason}): {REBAKE}") from error
-    _refuse_deep_data(path)
+    _check_bytes(path)
     channels = _open(path, header_only=False).channels()
     return header, [_floats(path, name, channels[name].pixels) for name in names]
 
@@ -213,12 +214,25 @@ def _refuse_other_formats(header: Header) -> None:
         raise header.failure("format", reason, "use a newer hairlut to read this file")
 
 
-def _refuse_deep_data(path: Path) -> None:
-    """The binding reads an image of plain scanlines that says of itself to be deep."""
-    with path.open("rb") as file:
-        flags = int.from_bytes(file.read(8)[4:], "little")
-    if flags & DEEP:
+def _word(data: bytes, at: int) -> bytes:
+    """A name in a header, up to its zero; of MAX_NAME bytes if that is missing."""
+    return data[at : at + MAX_NAME].split(b"\0")[0]
+
+
+def _check_bytes(path: Path) -> None:
+    """What the binding reads over: an image of plain scanlines that says of itself to be deep; and a header
+    that names no compression, or has a name longer than any OpenEXR library writes."""
+    data = path.read_bytes()
+    if int.from_bytes(data[4:8], "little") & DEEP:
         raise HairlutError(f"{path}: is marked as deep data, expected scanlines: {REBAKE}")
+    at, name = 8, b""
+    while name != b"compression":
+        name = _word(data, at)
+        kind = _word(data, at + len(name) + 1)
+        at += len(name) + len(kind) + 2
+        if not name or max(len(name), len(kind)) >= MAX_NAME or at + 4 > len(data):
+            raise HairlutError(f"{path}: not a complete OpenEXR image, it names no compression: {REBAKE}")
+        at += 4 + int.from_bytes(data[at : at + 4], "little")
 
 
 def _check_image(header: Header, expected: Sequence[str]) -> None:

@@ -17,7 +17,8 @@ from .errors import HairlutError
 from .lobes import LOBE_NAME, MAX_LOBES, Array
 
 MAX_TURN = 8 * np.pi
-MAX_NODES = 4096
+MAX_NODES = 4096  # of an axis
+MAX_GRID = 2**18  # of both
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from .exrfile import (
     write_image,
 )
 from .lobes import LOBE_NAME, MAX_LOBES, Array, space
-from .mixture import Mixture
+from .mixture import MAX_GRID, Mixture
 from .model import BakedLobe, BakedModel
 
 FILE = "mixture.exr"
@@ -79,6 +79,10 @@ def read(path: Path) -> MixtureFile:
     lobes = _lobes(header)
     mirrored = header.one_of("mirrored", ("0", "1")) == "1"
     rows, columns = channels[0].shape
+    if rows * columns > MAX_GRID:
+        raise HairlutError(
+            f"{path}: size is {columns}x{rows}, expected at most {MAX_GRID} nodes in all: {REBAKE}"
+        )
     axes = [
         _axis(header, "axis.theta_r", rows, -MAX_INCLINATION, MAX_INCLINATION),
         _axis(header, "axis.offset", columns, 0.0 if mirrored else -1.0, 1.0),

@@ -5,6 +5,10 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#ifdef _WIN32
+#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
+#endif
 
 /* A file on disk, or what a source reads. */
 typedef struct stream {
@@ -15,7 +19,7 @@ typedef struct stream {
 /* Up to `size` bytes from `offset` on; how many there were */
 static size_t read_at(const stream *s, uint64_t offset, unsigned char *bytes, size_t size)
 {
-    if (s->source && s->source->read_fn) {
+    if (s->source) {
         const int64_t count = s->source->read_fn(NULL, s->source->user_data, bytes, size, offset, NULL);
         return count > 0 ? (size_t)count : 0;
     }
@@ -53,9 +57,22 @@ static int find_compression(const stream *s)
     }
 }
 
+/* Paths are UTF-8, as OpenEXR takes them: on Windows fopen takes another encoding. */
+static FILE *open_file(const char *path)
+{
+#ifdef _WIN32
+    wchar_t wide[2048];
+    if (!MultiByteToWideChar(CP_UTF8, 0, path, -1, wide, (int)(sizeof wide / sizeof *wide)))
+        return NULL;
+    return _wfopen(wide, L"rb");
+#else
+    return fopen(path, "rb");
+#endif
+}
+
 int hairlut_exr_named_compression(const char *path, const exr_context_initializer_t *source)
 {
-    const stream s = {source && source->read_fn ? NULL : fopen(path, "rb"), source};
+    const stream s = {source ? NULL : open_file(path), source};
     const int compression = find_compression(&s);
     if (s.file)
         fclose(s.file);
@@ -71,5 +88,5 @@ int hairlut_exr_is_allowed(int compression)
 const char *hairlut_exr_compression_name(int compression)
 {
     static const char *const names[] = {"NONE", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"};
-    return compression >= 0 && compression < (int)(sizeof names / sizeof *names) ? names[compression] : "a newer one";
+    return (size_t)compression < sizeof names / sizeof *names ? names[compression] : "a newer one";
 }

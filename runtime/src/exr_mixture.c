@@ -3,7 +3,7 @@
 
 #include "exr_digest.h"
 
-enum { PER_LOBE = 2 /* channels: its share, its turn */ };
+enum { PER_LOBE = 2 /* channels: its share, its turn */, MOST_NODES = 1 << 18 };
 
 /* ---- lobes ---------------------------------------------------------------------------------------------------- */
 
@@ -142,6 +142,15 @@ static hairlut_result read_axes(const hairlut_exr_file *file, int mirrored, floa
     return read_axis(file, "hairlut.axis.offset", file->width, mirrored ? 0.0 : -1.0, 1.0, offset);
 }
 
+static hairlut_result check_size(const hairlut_exr_file *file)
+{
+    const hairlut_result result = hairlut_exr_check_size(file, 1, 1);
+    if (result == HAIRLUT_OK && file->width * file->height > MOST_NODES)
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE, "size is %d x %d: expected at most %d nodes in all; bake the model again",
+                                file->width, file->height, (int)MOST_NODES);
+    return result;
+}
+
 /* ---- shares and turns ----------------------------------------------------------------------------------------- */
 
 /* From texels whose channels stand together to arrays of one lobe after the other */
@@ -160,21 +169,17 @@ static hairlut_result read_nodes(const hairlut_exr_file *file, const char *const
                                  hairlut_exr_mixture *out)
 {
     const size_t rows = (size_t)file->height, columns = (size_t)file->width, nodes = rows * columns;
-    const uint64_t values = (uint64_t)nodes * (uint64_t)(PER_LOBE * out->lobe_count);
-    const uint64_t bytes = (2 * values + rows + columns) * sizeof(float);
+    const size_t values = nodes * (size_t)(PER_LOBE * out->lobe_count); /* at most 2^23 */
     char detail[HAIRLUT_MESSAGE_SIZE];
-    if (bytes > SIZE_MAX / 2)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_MEMORY, "%d x %d nodes are more than there is memory", file->width, file->height);
-    hairlut_result result = hairlut_allocate(allocator, (size_t)bytes, &out->memory, detail);
+    hairlut_result result = hairlut_allocate(allocator, (2 * values + rows + columns) * sizeof(float), &out->memory, detail);
     if (result != HAIRLUT_OK)
         return hairlut_exr_fail(file, result, "%.200s", detail);
     float *texels = out->memory, *share = texels + values, *turn = share + values / 2, *theta_r = turn + values / 2;
     uint32_t digest;
-    result = read_axes(file, out->desc.mirrored, theta_r, theta_r + rows);
+    (void)read_axes(file, out->desc.mirrored, theta_r, theta_r + rows); /* it was checked before */
+    result = hairlut_exr_pixels(file, channels, PER_LOBE * out->lobe_count, texels);
     if (result == HAIRLUT_OK)
-        result = hairlut_exr_pixels(file, channels, PER_LOBE * out->lobe_count, texels);
-    if (result == HAIRLUT_OK)
-        result = hairlut_exr_check_digest(file, texels, (size_t)values, &digest);
+        result = hairlut_exr_check_digest(file, texels, values, &digest);
     if (result != HAIRLUT_OK)
         return result;
     sort_channels(texels, nodes, out->lobe_count, share, turn);
@@ -193,7 +198,7 @@ static hairlut_result read_file(const hairlut_exr_file *file, const hairlut_allo
     if (result == HAIRLUT_OK)
         result = check_channels(file, out, names, channels);
     if (result == HAIRLUT_OK)
-        result = hairlut_exr_check_size(file, 1, 1);
+        result = check_size(file);
     if (result == HAIRLUT_OK)
         result = hairlut_exr_model(file, out->model);
     if (result == HAIRLUT_OK)

@@ -15,11 +15,12 @@ static double inner_slope(double d0, double d1, double h0, double h1)
     return (d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1);
 }
 
-/* At an end of a row: a parabola's, from that at the next knot, but within a factor of 8 of the cell's mean slope. */
+/* At an end of a row: a parabola's, from that at the next knot, but at least an eighth of the cell's mean slope. As slopes are
+ * positive it is at most twice that. */
 static double end_slope(double mean, double next)
 {
     const double slope = 2.0 * mean - next;
-    return slope < mean / 8.0 ? mean / 8.0 : slope > 8.0 * mean ? 8.0 * mean : slope;
+    return slope < mean / 8.0 ? mean / 8.0 : slope;
 }
 
 /* The width in u of cell i. Its ends are counted from the nearer end of the u axis: no cancellation. */

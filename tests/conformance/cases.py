@@ -22,12 +22,28 @@ COMMON = ("format", "model", "table", "unit")
 OF_TABLE = ("angle", "azimuth", "theta_r_range", "domain", "warp", "cell", "knots")
 OF_MIXTURE = ("lobes", "lobe.direct", "lobe.multiple", "axes", "axis.theta_r", "axis.offset", "mirrored")
 # what is no number, or no space between two
-NO_NUMBERS = ("1_0", "\uff11", "inf", "nan", "0x1p3", "1e", "1.2.3", "1,5", "", "--1", "1e999", "0" * 101)
+NO_NUMBERS = (
+    "1_0",
+    "1e25",
+    "9e300",
+    "1e99999",
+    "\uff11",
+    "inf",
+    "nan",
+    "0x1p3",
+    "1e",
+    "1.2.3",
+    "1,5",
+    "",
+    "--1",
+    "1e999",
+    "0" * 101,
+)
 NUMBERS = ("1.5", "+1.5", "1.5e0", "15E-1", "1.5000000000000000000000", "0015e-1", "1.50e+00")
 NO_WARPS = ("cubic", "octaves", "octaves e=", "octaves e=1e-5 ", "octaves e=nan", "octaves e=1e-13")
 NO_WARPS += ("octaves e=2", "octaves e=-1", "octaves  e=0.1", "octaves f=0.1", "uniform e=0")
 NO_LOBES = ("direct direct", "direct  multiple", "direct Multiple", "direct 2nd", "direct,multiple")
-NO_LOBES += ("direct m-", f"direct {'m' * 32}", " ".join(f"l{k}" for k in range(17)))
+NO_LOBES += ("direct m-", "direct m{", f"direct {'m' * 32}", " ".join(f"l{k}" for k in range(17)))
 NO_TABLES = (
     "multiple_theta",
     "multiple_theta 0123456",
@@ -58,9 +74,9 @@ def each(change: Callable[[np.ndarray], np.ndarray], digest: bool = False) -> Ed
     return Edit(channels=lambda channels: {n: change(c) for n, c in channels.items()}, digest=digest)
 
 
-def moved(window: str) -> Edit:
-    """A window moved by one texel."""
-    step = np.array([1, 0], np.int32)
+def moved(window: str, axis: int) -> Edit:
+    """A window moved by one texel to the right or down."""
+    step = np.eye(2, dtype=np.int32)[axis]
     return Edit(header=lambda h: {window: tuple(corner + step for corner in h[window])})
 
 
@@ -98,6 +114,16 @@ def patched(at: bytes, by: int, value: int) -> Edit:
     return Edit(whole=whole)
 
 
+def inserted(at: int, data: bytes) -> Edit:
+    """Bytes put into a file."""
+
+    def whole(path: Path) -> None:
+        old = path.read_bytes()
+        path.write_bytes(old[:at] + data + old[at:])
+
+    return Edit(whole=whole)
+
+
 def gone(path: Path) -> None:
     path.unlink()
 
@@ -126,8 +152,9 @@ def layouts(file: str, channel: str) -> Iterator[Case]:
     tiles = {"type": OpenEXR.tiledimage, "tiles": OpenEXR.TileDescription()}
     yield "tiled", file, Edit(header=tiles), "expected scanlines"
     yield "two parts", file, Edit(whole=two_parts), "2 parts"
-    yield "data window", file, moved("dataWindow"), "dataWindow"
-    yield "display window", file, moved("displayWindow"), "displayWindow"
+    for axis in (0, 1):
+        yield f"data window {axis}", file, moved("dataWindow", axis), "dataWindow"
+        yield f"display window {axis}", file, moved("displayWindow", axis), "displayWindow"
     yield "larger display window", file, Edit(header=larger_display), "displayWindow"
     yield "half", file, each(lambda c: c.astype(np.float16)), "32-bit float"
     yield "uint", file, each(lambda c: c.astype(np.uint32)), "32-bit float"
@@ -137,10 +164,15 @@ def layouts(file: str, channel: str) -> Iterator[Case]:
     name = channel.encode() + b"\0"
     even = "sampled 2" if file == THETA else ".exr"  # an odd width makes it no image at all
     yield "every second column alone", file, patched(name, len(name) + 8, 2), even
+    yield "every second row alone", file, patched(name, len(name) + 12, 2), "sampled 1"
     magic = b"\x76\x2f\x31\x01"
     yield "flag of deep data", file, patched(magic, 5, 8), ".exr"
     yield "flag of tiles", file, patched(magic, 5, 2), ".exr"
     yield "another magic number", file, patched(magic, 0, 0), "OpenEXR image"
+    yield "no compression", file, patched(b"compression\0", 10, ord("X")), ".exr"
+    for text in (b"x" * 300 + b"\0int\0", b"x\0" + b"t" * 300 + b"\0", b"x\0int"):
+        attribute = inserted(8, text + b"\4\0\0\0\0\0\0\0")
+        yield f"an attribute {text[:4]!r} of {len(text)} bytes", file, attribute, ".exr"
     yield "another version", file, patched(magic, 4, 3), ".exr"
     fewer = Edit(channels=lambda c: {n: p for n, p in c.items() if n != channel} or {"A": c[channel]})
     yield "a channel less", file, fewer, "channels"
@@ -165,6 +197,8 @@ def attributes(file: str, names: tuple[str, ...]) -> Iterator[Case]:
     yield "a newer format", file, Edit(header={"hairlut.format": 3}), "hairlut.format is 3"
     yield "no format", file, Edit(header={"hairlut.format": 0}), "hairlut.format is 0"
     yield "degrees as unit", file, Edit(header={"hairlut.unit": "deg"}), "hairlut.unit is 'deg'"
+    yield "a control character", file, Edit(header={"hairlut.unit": "rad\x7f"}), "hairlut.unit is"
+    yield "a model with one", file, Edit(header={"hairlut.model": "fitted\x7f"}), "hairlut.model is"
     yield "a long model", file, Edit(header={"hairlut.model": "m" * 64}), "hairlut.model is 'mmm"
     yield "a model beyond ASCII", file, Edit(header={"hairlut.model": "caf\u00e9"}), "hairlut.model is"
     yield "renamed", file, Edit(header={"hairlut.table": "grey_theta"}), "hairlut.table is 'grey_theta'"
@@ -186,6 +220,7 @@ def numbers() -> Iterator[Case]:
     for number in NUMBERS:
         edit = Edit(header={attribute: f"-1.5 {number}"})
         yield f"number {number}", THETA, edit, None
+    yield "a number next to 0", THETA, Edit(header={attribute: "1e-500 1.5"}), None
     for number in NO_NUMBERS:
         for text in (f"{number} 1.5", f"-1.5 {number}"):
             yield f"no number: {text!r}", THETA, Edit(header={attribute: text}), attribute
@@ -212,6 +247,8 @@ def tables(format_2: bool) -> Iterator[Case]:
     for digits, said in ((12, None), (9, "hairlut.knots")):
         edit = Edit(text={"hairlut.knots": lambda x, n=digits: rounded(x, n)})
         yield f"knots of {digits} digits", THETA, edit, said
+    for azimuth in ("sum", "difference"):
+        yield f"azimuth {azimuth}", PHI, Edit(header={"hairlut.azimuth": azimuth}), None
     for azimuth in ("none", "wrapped", "Sum"):
         edit = Edit(header={"hairlut.azimuth": azimuth})
         yield f"azimuth {azimuth}", PHI, edit, f"hairlut.azimuth is '{azimuth}'"
@@ -260,6 +297,8 @@ def format_2() -> Iterator[Case]:
             "crc32  01234567",
             "CRC32 01234567",
             "crc32 0123456G",
+            "crc32 0123456g",
+            "crc32 0123456!",
             "01234567",
         ):
             yield f"digest {text!r}", file, Edit(header={"hairlut.digest": text}), "hairlut.digest"
@@ -295,6 +334,8 @@ def format_1() -> Iterator[Case]:
     ):
         yield f"cell {text}", THETA, Edit(header={cell: text}), cell
     yield "a digest", THETA, Edit(header={"hairlut.digest": "crc32 00000000"}), None
+    for value in (1e30, -1e30, -1.6):
+        yield f"a second angle of {value}", THETA, put("Y", (0, 1), value, digest=False), "row 0, columns"
     yield "slopes", THETA, Edit(channels=lambda c: c | {"dxdu": c["Y"]}), "channels"
     yield "format 2", THETA, Edit(header={"hairlut.format": 2}), "hairlut.format is 2"
     yield "an empty directory", THETA, Edit(whole=all_gone), MIXTURE
@@ -312,7 +353,7 @@ def mixtures() -> Iterator[Case]:
         yield f"a turn of {value}", MIXTURE, put(turn, (1, 2), value), "turn"
     yield "no share at a node", MIXTURE, Edit(channels=no_share, digest=True), "share"
     yield "another lobe's tables", MIXTURE, Edit(header={"hairlut.lobe.grey": "?"}), None
-    for text in ("direct", "direct multiple grey", "direct other"):
+    for text in ("direct", "direct multiple grey", "direct a_1"):
         yield f"lobes {text!r}", MIXTURE, Edit(header={"hairlut.lobes": text}), "channels"
     for text in NO_LOBES:
         yield f"lobes {text!r}", MIXTURE, Edit(header={"hairlut.lobes": text}), "hairlut.lobes is"
@@ -322,6 +363,8 @@ def mixtures() -> Iterator[Case]:
     three = Edit(text={lobe: lambda x: f"{x} direct_phi 01234567 direct_phi 01234567"})
     yield "lobe of three tables", MIXTURE, three, lobe
     again = Edit(header={lobe: "direct_theta 01234567"})
+    phi = Edit(text={lobe: lambda x: f"{x} direct_phi 01234567"})
+    yield "one azimuth table with two digests", MIXTURE, phi, lobe
     yield "one table with two digests", MIXTURE, again, lobe
     absent = Edit(header={lobe: "absent_theta 01234567"})
     yield "a table that is not there", MIXTURE, absent, "absent_theta.exr"
@@ -346,6 +389,7 @@ def mixtures() -> Iterator[Case]:
     yield "a row less", MIXTURE, each(lambda c: c[:-1], digest=True), "hairlut.axis.theta_r"
     yield "a column more", MIXTURE, each(lambda c: np.hstack([c, c]), digest=True), "hairlut.axis.offset"
     yield "too wide", MIXTURE, each(lambda c: np.ones((4, 4097), np.float32), digest=True), "4096"
+    yield "too many nodes", MIXTURE, each(lambda c: np.ones((513, 512), np.float32), digest=True), "size"
     yield "one node", MIXTURE, one_node(), None
 
 

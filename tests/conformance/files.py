@@ -94,10 +94,15 @@ def write_format_1(directory: Path, source: Path) -> Path:
     write_format_2(directory, source)
     (directory / "mixture.exr").unlink()
     for path in directory.glob("*.exr"):
-        edit = Edit(
-            header={"hairlut.format": 1, "hairlut.cell": FORMAT_1_CELL},
-            drop=("hairlut.digest",),
-            channels=lambda channels: {"Y": channels["Y"]},
-        )
-        edit.apply(path)
+        to_format_1(path)
     return directory
+
+
+def to_format_1(path: Path) -> None:
+    """A table's file of format 2, as format 1 wrote it."""
+    edit = Edit(
+        header={"hairlut.format": 1, "hairlut.cell": FORMAT_1_CELL},
+        drop=("hairlut.digest",),
+        channels=lambda channels: {"Y": channels["Y"]},
+    )
+    edit.apply(path)

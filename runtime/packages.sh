@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Debian packages that the build (base) or the optional tests (extras) use. As root on an apt system installs what is
 # missing; otherwise prints the one line to type. Never fails: what is absent is skipped, and said, later on.
 set -u

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # What must be there before anything is set up or built: tools.sh PYTHON [READY]. PYTHON is looked at unless the file READY says that
 # the environment stands. What is missing is named with the remedy, exit code 2, before a file is written.
 set -u

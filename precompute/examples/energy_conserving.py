@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The energy-conserving longitudinal lobe of d'Eon et al. (2011).
 
 With the variance v and both angles measured from the normal plane, light leaves towards theta_r from

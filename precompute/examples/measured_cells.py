@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A longitudinal lobe that no formula describes: masses of light in cells of theta_i, from a table.
 
 A goniometer's counts would be given in the same way. The table says where its numbers come from.

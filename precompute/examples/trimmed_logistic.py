@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The trimmed logistic of Chiang et al. (2016), in azimuth.
 
     density(phi) = (1/s) e^(-z) / (1 + e^(-z))^2,   z = (phi - pi) / s,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A longitudinal lobe with two peaks: reflection at the surface (R), and light that crossed twice (TRT).
 
 The tilt of the scales, 3 degrees, shifts R by twice the tilt and TRT by four times as much to the other

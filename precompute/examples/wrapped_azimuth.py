@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A Gaussian in azimuth that is wrapped around the circle, where the built-in one is cut to one period.
 
 The wrapped density is the sum of the Gaussian over all periods. Its ends meet: it has no step where the cut

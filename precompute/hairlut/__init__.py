@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Importance sampling of hair scattering from small lookup textures, and the tool that bakes them.
 
     import hairlut

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The C library behind hairlut.Model; sampler.py is its only caller."""
 
 from collections.abc import Sequence

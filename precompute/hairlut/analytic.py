@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The closed form of a Gaussian lobe cut to its domain (derivation.md). The bake never imports it: it is what
 the numerical integration is tested against.
 

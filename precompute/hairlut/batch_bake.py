@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Bakes a directory of model files, each in a process of its own: no model can stop or change another.
 
 Each process does what `hairlut bake --model FILE --out DIR` does; a render farm's queue can run that command

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Cumulative masses that are monotone cubics between knots, many rows at once: density and quantiles."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The exact lobe at some viewer inclinations: what a table is made from, and measured against."""
 
 from functools import partial

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Models and tables for engines that do not read OpenEXR.
 
 Target "c" is a C source against the public header (csource.py); "raw" and "npz" are plain arrays (arrays.py),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Tables and whole models as OpenEXR files (luts/FORMAT.md)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """One look for all figures: colours that colour-blind readers can tell apart, and files that are the same
 every time."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The normalising integral of any log-density on an interval, and its running integral from both ends.
 
 One-dimensional Gauss-Legendre panels, bisected until the integral over a panel and over its two halves agree.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """How a table is read (luts/FORMAT.md): between its rows and columns, and backwards. In double precision.
 
 The angles and slopes of two neighbouring rows are blended linearly in theta_r, and between two blended knots

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The inverse of a running integral: the angle below, or above, which a given part of the mass lies."""
 
 import numpy as np

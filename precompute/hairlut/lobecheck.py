@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What is wrong with a lobe from a model file: found before it is baked, and named where it happens."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The lobes: equations (2) to (4) of the source text, in its two readings.
 
 Every lobe is a density of one angle x given the viewer's inclination theta_r: x is the incident inclination

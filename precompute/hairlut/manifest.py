@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Whether the textures of a model file are up to date: what they were made from, kept beside them.
 
 A model's directory holds `manifest.json`, written after the textures: the SHA-256 of the model file, of the

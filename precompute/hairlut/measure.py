@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a table costs a Monte Carlo estimate, measured against the exact lobe.
 
 With f the exact, normalised density of a lobe at one theta_r, and q the density that the table samples there,

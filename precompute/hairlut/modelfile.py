@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A model from a file: a hair's own lobes, written in Python or TOML, or as masses of cells.
 
 A **Python file** defines `LOBES`: for each lobe a density named <lobe>_theta, and where the azimuth is not

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Numbers in the text of a file's header, and texts of the form "name key=NUMBER", which name a warp."""
 
 import math

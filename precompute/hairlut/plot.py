@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures of a table: the texture, the lobe that it samples, and its error in every row."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The smallest table that meets a tolerance.
 
 The tolerance bounds the relative variance V (measure.py) on every row and between rows. V falls with the

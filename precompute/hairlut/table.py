@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A table: a lobe's inverse CDF at the knots of a warp, for a row of viewer inclinations."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A lobe known as masses of cells at some viewer angles: measured, simulated, or evaluated on a grid.
 
 Along x, each row's cumulative mass at the cells' edges is joined by a monotone cubic, so that every cell

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A model's files checked again from themselves alone: the headers name the lobes, the lobes say what every
 texel must be.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The warp: which cumulative probability u each column of a table stands for.
 
 It is symmetric about u = 1/2, so everything is written for the smaller tail m = min(u, 1-u) and its folded

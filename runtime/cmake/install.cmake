@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Install: libraries, headers, a CMake package, pkg-config files, and the data: tables, shaders, the format's page, the license.
 set(package_directory ${CMAKE_INSTALL_LIBDIR}/cmake/hairlut)
 set(HAIRLUT_DATA_DIR ${CMAKE_INSTALL_DATADIR}/hairlut)

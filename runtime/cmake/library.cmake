@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # One library in its two forms, from sources compiled once.
 
 # Arithmetic as written: one rounding an operation, NaN and infinity kept, also in a project that compiles with -ffast-math,

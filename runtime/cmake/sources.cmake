@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The list src/sources.txt, and the flags that some of its files need.
 
 # hairlut_sources(LIBRARY VARIABLE): the library's files, each with its flags set

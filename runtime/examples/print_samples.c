@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Draws samples from the tables compiled into the library and from table files, and prints both with the tables' sizes
  * and measured errors: print_samples [DIRECTORY...], each directory named after its model. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* hairlut: importance sampling of a hair's scattering from lookup tables.
  *
  *     #include "hairlut.h"

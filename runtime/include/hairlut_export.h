@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Which symbols leave the shared libraries. Define HAIRLUT_STATIC when linking the static ones on Windows. */
 #ifndef HAIRLUT_EXPORT_H
 #define HAIRLUT_EXPORT_H

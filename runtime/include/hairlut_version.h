@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 #ifndef HAIRLUT_VERSION_H
 #define HAIRLUT_VERSION_H
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Prints where the wheels mitsuba;drjit;nanobind lie that the plugin is built against, or what is missing."""
 
 import importlib.metadata

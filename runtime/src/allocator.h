@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The caller's memory hooks, or malloc and free. */
 #ifndef HAIRLUT_ALLOCATOR_H
 #define HAIRLUT_ALLOCATOR_H

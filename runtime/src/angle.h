@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Azimuths and cosines without libm. */
 #ifndef HAIRLUT_ANGLE_H
 #define HAIRLUT_ANGLE_H

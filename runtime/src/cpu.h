@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Which vector instructions the processor has and the operating system saves: cpuid, by intrinsics that gcc, clang and MSVC
  * share, so that what the tests run is what every compiler builds. Intel's Software Developer's Manual 2A, CPUID; 1, 13.3. */
 #ifndef HAIRLUT_CPU_H

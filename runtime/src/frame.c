@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* World directions and (theta, phi) in a fibre frame. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Error text: one line into a caller's buffer of HAIRLUT_MESSAGE_SIZE bytes, or nowhere. */
 #ifndef HAIRLUT_MESSAGE_H
 #define HAIRLUT_MESSAGE_H

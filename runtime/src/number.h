@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Decimal numbers from text whatever the locale: strtod reads "0,5" where the program's user set a comma. */
 #ifndef HAIRLUT_NUMBER_H
 #define HAIRLUT_NUMBER_H

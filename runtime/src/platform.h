@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* What the sources ask of the compiler. Bits that are equal on every processor, and NaN that is noticed, need IEEE arithmetic
  * in the type that is written. CMake sets the flags; whoever compiles by hand is told here. */
 #ifndef HAIRLUT_PLATFORM_H

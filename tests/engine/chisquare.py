@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pearson's test of a BSDF's sampling against its density, with the engine's own statistic.
 
 `mitsuba.chi2.ChiSquareTest` needs an array variant, and the plugin is scalar. The histogram is taken here, in

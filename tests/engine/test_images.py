@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Small renders: the mean image is the reference's, a wrong density shows, and no pixel is NaN."""
 
 import numpy as np

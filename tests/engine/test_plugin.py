@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The BSDF plugin alone: what it draws is what its density says, at every viewer direction."""
 
 import math

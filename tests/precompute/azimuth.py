@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The azimuth lobe in the incident azimuth phi_i itself, over a grid of phi_r.
 
 The density of direct_phi depends on phi_i and phi_r only through the relative azimuth, so every phi_r gives

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Fixtures: the shipped tables, and lobes that no formula of the project has."""
 
 from pathlib import Path

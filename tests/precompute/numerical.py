@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a bake computes before it rounds."""
 
 from hairlut.integrate import integrate, rows_of_lobe

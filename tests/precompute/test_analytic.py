@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The closed form itself, against 40-digit arithmetic."""
 
 import mpmath as mp

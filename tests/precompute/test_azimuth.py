@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """phi_r has no axis in a texture: the same azimuth row for every phi_r, shifted."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The command: what it prints, its exit codes, and that a user's mistake is one line without a traceback."""
 
 import json

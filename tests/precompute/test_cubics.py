@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Masses of cells in closed form: the density and the quantiles that integration finds, at less cost."""
 
 from dataclasses import replace

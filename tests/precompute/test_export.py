@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The C source of exported models: plain numbers against the public header, and the loader's model."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Raw floats, streams and npz give back the same numbers."""
 
 import json

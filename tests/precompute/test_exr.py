@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files: what is written is read again; what is no table is refused with file, attribute and remedy."""
 
 import os

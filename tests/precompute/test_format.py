@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """luts/FORMAT.md is true: its worked examples, computed by the page's rules and by nothing of hairlut's."""
 
 import math

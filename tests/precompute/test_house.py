@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The house stays in order: data flows one way, and what an engine copies holds nothing else."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Normalising masses, tails, and densities that are hard to integrate."""
 
 import mpmath as mp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The reading of a table: sample, density and inverse belong to each other, on the rows and between them."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The two readings against the tables from which the source text's author took the equations."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Directories of model files: each in a process of its own, resumable, with one summary and one exit code."""
 
 import json

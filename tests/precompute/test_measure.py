@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The measurements of a table's cost: by hand, against an independent quadrature, and on tables known to be
 wrong."""
 

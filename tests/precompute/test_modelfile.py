@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Model files: what they mean, and that a mistake in one is named by file, lobe, theta_r and reason."""
 
 import os

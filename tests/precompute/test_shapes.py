@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Lobes that are not cut Gaussians: baked to a tolerance, and measured here against their own closed form or
 quadrature, by nothing that the bake uses."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The tolerance is met with nothing to spare, and the sizes that the project promises have the errors it
 promises."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Texels of the shipped tables against 40-digit arithmetic, and the bake against the closed form."""
 
 import numpy as np

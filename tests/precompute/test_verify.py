@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut verify finds what is wrong with a file, says where, and passes what is right."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The lobe explorer in a browser: every control moved, the numbers on the page compared with C's."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Columns and cumulative probabilities."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The lobes, the warp and the quantiles again in 40-digit arithmetic, from the equations and nothing else."""
 
 import mpmath as mp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The pages of tests/report/pages/: speed, scale, hard cases, the study behind the design."""
 
 from collections.abc import Callable, Iterable, Iterator

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes the pages of the report: speed, scale, hard cases, the study, quasi-random numbers, with plots.
 
 PYTHONPATH=tests .venv/bin/python -m report --bench build/bench/hairlut_bench     some minutes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """How long the bake takes, beside scipy's two ways to the same quantiles of the same rows."""
 
 from dataclasses import dataclass

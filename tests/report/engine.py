@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The engine with the plugin: what runtime/mitsuba/plugin.py builds."""
 
 import sys

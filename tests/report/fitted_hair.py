@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Tables fitted to the engine's own hair BSDF, against the sampler that its authors derived for it by hand.
 
     PYTHONPATH=tests .venv/bin/python -m report.fitted_hair [--draws N] --out tests/report/pages/fit.json

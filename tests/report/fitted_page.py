@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The page pages/fit.md and its pictures, from the numbers that fitted_hair.py measured.
 
 PYTHONPATH=tests .venv/bin/python -m report.fitted_page tests/report/pages/fit.json

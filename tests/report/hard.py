@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Hard cases: each one works with a stated error, or is refused with a stated message."""
 
 from collections.abc import Callable

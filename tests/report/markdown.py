@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Tables in Markdown."""
 
 from collections.abc import Iterable, Sequence

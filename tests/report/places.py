@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Where the report finds things, and where its pages go."""
 
 from pathlib import Path

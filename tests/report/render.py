@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Renders the hair scene with every sampler; writes the page that compares them, pages/render.md.
 
 PYTHONPATH=tests .venv/bin/python -m report.render

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes pages/shaders.md from shaders.md: how closely each shader follows C on this machine."""
 
 import argparse

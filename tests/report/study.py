@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The comparison from which the table's design was decided: warps, cells, rows, ends and 16-bit texels.
 
 Every candidate is measured by measure.py on the four different lobes of the two models, at every row and

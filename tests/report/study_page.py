@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The study as a page: what was compared, what came out, what was decided."""
 
 from collections.abc import Iterable

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Every hard case works, with an error on record, or is refused with a message; draws of the hardest follow
 their lobes."""
 

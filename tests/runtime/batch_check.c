@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Holds every set of batch kernels that this processor runs against the one-direction functions, bit for bit: single lobes and
  * the whole hair, any n, any alignment, outputs in place of inputs, outputs and inputs left out, hard inputs, tables of awkward
  * sizes, mixtures of every shape. Prints the sets, what differs, and a checksum of all results; exits with 1 if anything

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A program compiled with the library's sources file by file, with flags and kernels of the test's
 choice."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The C library as the tests see it: built once a session, called through ctypes on numpy arrays."""
 
 import ctypes

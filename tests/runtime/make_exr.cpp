@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 // Copies a file with the OpenEXR library that the loader is built with, older than the one in Python:
 //
 //     make_exr SOURCE TARGET N       the same texels and attributes with compression N (0 NONE, 1 RLE .. 4 PIZ)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Models of the C library made from memory, of what Python has read."""
 
 import numpy as np

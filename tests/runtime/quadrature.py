@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Integrals of the C library's densities, from the density function alone."""
 
 import numpy as np

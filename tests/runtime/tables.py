@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Tables for the tests of models from memory, and OpenEXR files made from good ones with one thing wrong."""
 
 import ctypes

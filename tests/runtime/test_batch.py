@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The batch kernels give the bits of the one-direction functions, on every instruction set run here."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Compiled-in tables: runtime/src/builtin_tables.c, committed so that a C build needs neither Python nor
 OpenEXR, is what runtime/tools/embed.c makes of luts/, and that is what the loader builds of the textures."""
 

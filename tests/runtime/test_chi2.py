@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Samples follow the density that is returned with them: chi-squared tests, each at its own fixed seed.
 
 Expected counts come from integrating the density function over every bin. All tests of this file together

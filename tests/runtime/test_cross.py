@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The library and a consumer for other systems, compiled by Zig's clang, which brings their C libraries.
 
 Built for macOS (both processors), Windows and ARM Linux; the Windows programs run under wine and the ARM ones

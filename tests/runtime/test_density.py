@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Each table's density integrates to 1, on its rows and between them."""
 
 import numpy as np

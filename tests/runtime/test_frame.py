@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """World directions and fibre angles: both ways, at the poles, tilted, and turned."""
 
 import ctypes

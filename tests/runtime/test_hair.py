@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The whole hair: its mixture against the single lobes and against the model read in double precision, light
 gathered with all of it, and what shares, turns, offsets and mirroring do.
 

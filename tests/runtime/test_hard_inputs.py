@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """No finite input gives NaN or infinity; what the others give is what hairlut.h says."""
 
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The headers compile alone, in C99 and in C++17, without a warning; the symbols are the header's."""
 
 import re

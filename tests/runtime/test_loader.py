@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut_load: what it gives, its results and messages, its memory, its threads. Which files it takes and
 which it refuses: tests/conformance."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Models from descriptors in memory: what is accepted, what is refused and how, and who owns the memory."""
 
 import ctypes

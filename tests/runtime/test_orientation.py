@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Signs: which way the lobes lean, and what an azimuth is measured from, at a large tilt."""
 
 import numpy as np

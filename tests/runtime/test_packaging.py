@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The library from outside: a tiny project built in each of the three ways that users link."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the sources ask of a compiler and of a processor, and what an including project may do to them."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Sample, pdf and invert of one direction agree with each other and with the same reading in double.
 
 An angle is a float, and one step of a float moves the density by as much as the density changes over

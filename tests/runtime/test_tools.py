@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """`make` on machines where something is missing: what is said, and that nothing is left behind.
 
 Each case runs the scripts in a folder of their own, with a PATH of the programs that the machine has.

@@ -1,4 +1,5 @@
 #version 300 es
+// SPDX-License-Identifier: BSD-3-Clause
 precision highp float;
 precision highp int;
 uniform highp sampler2D records; // RGBA32F: three texels a record

@@ -1,4 +1,5 @@
 #version 430
+// SPDX-License-Identifier: BSD-3-Clause
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };
 layout(std430, binding = 1) writeonly buffer Outputs { vec4 outputs[]; };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 StructuredBuffer<float4> hairs : register(t0);
 cbuffer Place : register(b1) { int4 place; }; // (first texel, count, 0, 0)
 StructuredBuffer<float4> inputs : register(t2);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 @group(0) @binding(0) var<storage, read> hairs: array<vec4f>;
 @group(0) @binding(1) var<uniform> place: vec4i; // (first texel, count, 0, 0)
 @group(0) @binding(2) var<storage, read> inputs: array<vec4f>;

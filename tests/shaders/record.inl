@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* One record, in every language that takes the body as it stands: shaders' twin of `evaluate` in harness.c. */
 struct test_result {
     hairlut_sample lobe;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The command hairlut: a module a subcommand, with add_parser(subparsers) and run(args) -> exit code."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut bake: from the equations to the textures."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut export: tables for engines with their own loaders."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut fit: from a BSDF, a grid or draws to textures that sample them, with their measured error."""
 
 import argparse

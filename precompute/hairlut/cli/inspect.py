@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut inspect: what a file says about itself."""
 
 import argparse

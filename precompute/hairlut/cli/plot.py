@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut plot: pictures of textures, lobes and errors."""
 
 import argparse

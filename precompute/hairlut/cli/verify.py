@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """hairlut verify: every table measured again from its file alone."""
 
 import argparse

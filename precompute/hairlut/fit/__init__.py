@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """From what a renderer can evaluate or draw to a baked mixture of lobes.
 
 bsdf runs a user's function, read takes grids and draws from files, and hair, grid and draws make densities

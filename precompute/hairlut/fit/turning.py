@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Masses of even cells around a circle, turned by an angle, and by how much one is another turned."""
 
 from __future__ import annotations

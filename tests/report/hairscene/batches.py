@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Renders in independent batches: their mean is an image of more samples, their spread is the variance.
 
 With the engine's independent sampler, the mean of k images of n samples a pixel has the distribution of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The nested hair BSDF against the tables, by quadrature over the sphere: which lobe is met, which is missed.
 
 Viewers are named by theta_r and by h = sin(phi_r), the place across the fibre that is hit. f is the

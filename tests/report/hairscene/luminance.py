@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Luminance as the engine has it, of linear RGB with the primaries of Rec. 709."""
 
 import numpy as np

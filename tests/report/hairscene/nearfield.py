@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A hair BSDF as a function of where its fibre is hit: values on grids, and its light by quadrature.
 
 A fibre is hit at an offset sin(gamma) in [-1, 1] from its axis; gamma is the viewer's azimuth, measured from

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """How much of what the hair scatters meets other hair, where an estimate of one scattering ends."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """By calculation: the variance that a family leaves, by the offsets that it is fitted to, and by its lobes.
 
 The BSDF is evaluated at FINE offsets; families are fitted to some of them, and drawn from at all. What no

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The density that the draws of the engine's `hair` really have, which is not quite what its pdf() says.
 
 Its sample() draws from four lobes (Chiang et al. 2016). Two things are off in Mitsuba 3.9:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The page render.md: page.md with the numbers that the renders and the BSDF give."""
 
 from __future__ import annotations

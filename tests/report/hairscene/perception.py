@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What an observer sees: sRGB pictures, and colour differences by CIE 2000 and by ITP (ITU-R BT.2124)."""
 
 from __future__ import annotations

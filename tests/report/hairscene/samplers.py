@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What is compared: ways to draw a direction for one and the same hair, and the settings they are used in."""
 
 from __future__ import annotations

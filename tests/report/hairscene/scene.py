@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The hair scene, generated from a seed: curved B-spline strands, an environment and an area light.
 
 Lengths are in scene units of about 10 cm; y points up, the camera looks along -z.

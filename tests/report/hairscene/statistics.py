@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Variance, bias and their uncertainty from independent batches of images."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* The header in C99, alone in its file, with warnings as errors; and a walk through the API. */
 #include "hairlut.h"
 

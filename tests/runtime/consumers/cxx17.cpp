@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 // The header from C++17: linkage, and nothing that C++ refuses.
 #include "hairlut.h"
 

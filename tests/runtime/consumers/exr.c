@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Loads a model from the directory given. */
 #include <stdio.h>
 

@@ -1,24 +1,28 @@
-"""The lobe explorer: one HTML page that draws with the shipped shader from the tables inside it."""
+"""The lobe explorer: one HTML page that draws with the shipped shader from the models inside it."""
 
 import base64
 import json
-from collections.abc import Sequence
+import zlib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from . import __version__, config
-from .axis import axis_numbers
+from . import __version__
+from .errors import HairlutError
 from .exr import read_model
 from .files import write_whole
-from .lobes import MODELS, SUM
+from .lobes import MODELS
 from .measure import Errors, measure
+from .model import BakedModel, assemble
 from .size import table_of_size
+from .stream import stream
 from .table import Table
 
 VIEWER = Path(__file__).with_name("viewer")
-PROGRAMS = ("model", "draw", "evaluate", "screen", "sphere", "point", "dot", "nothing")
-SIZES = (16, 32, 64)
+SHADER = Path(__file__).parents[2] / "runtime" / "shaders" / "hairlut.glsl"
+PROGRAMS = ("model", "draw", "evaluate", "shares", "screen", "sphere", "point", "dot", "nothing")
+SIZES = (16, 32)
 
 
 def write_explorer(directories: Sequence[Path], out: Path, sizes: Sequence[int] = SIZES) -> Path:
@@ -28,12 +32,16 @@ def write_explorer(directories: Sequence[Path], out: Path, sizes: Sequence[int] 
 
 def page(directories: Sequence[Path], sizes: Sequence[int] = SIZES) -> str:
     """The page as text."""
+    if not SHADER.is_file():
+        raise HairlutError(
+            f"{SHADER}: no such file: run hairlut view from a checkout, which has runtime/shaders"
+        )
     models = {}
     for directory in directories:
-        shipped = read_model(directory).tables
-        models[shipped[0].model] = model_data(shipped, sizes)
+        shipped = read_model(directory)
+        models[shipped.name] = model_data(shipped, sizes)
     programs = {f"{name}.glsl": (VIEWER / f"{name}.glsl").read_text() for name in PROGRAMS}
-    programs["hairlut.glsl"] = (config.data("shaders") / "hairlut.glsl").read_text()
+    programs["hairlut.glsl"] = SHADER.read_text()
     parts = {
         "/*@style*/": (VIEWER / "style.css").read_text(),
         "/*@data*/": json.dumps({"version": __version__, "models": models}, separators=(",", ":")),
@@ -46,36 +54,48 @@ def page(directories: Sequence[Path], sizes: Sequence[int] = SIZES) -> str:
     return text
 
 
-def model_data(shipped: Sequence[Table], sizes: Sequence[int]) -> dict:
-    """A model's tables at every size: as shipped, and baked again where its lobes are known."""
-    model = MODELS.get(shipped[0].model)
+def model_data(shipped: BakedModel, sizes: Sequence[int]) -> dict:
+    """A model at every size: as shipped, and baked again where its lobes have formulas."""
+    names = [table.name for table in shipped.tables]
+    lobes = [
+        {"name": lobe.name, "tables": [names.index(table.name) for table in lobe.tables]}
+        for lobe in shipped.lobes
+    ]
+    model = MODELS.get(shipped.name)
     if model is None:
-        return _model(shipped, {"shipped": [(table, None) for table in shipped]})
-    chosen = {
-        "shipped": [(table, measure(table, lobe)) for table, lobe in zip(shipped, model.lobes, strict=True)]
-    }
+        return {"lobes": lobes, "sizes": {"shipped": _size(shipped, {})}}
+    exact = {lobe.name: lobe for lobe in model.lobes}
+    chosen = {"shipped": _size(shipped, {t.name: measure(t, exact[t.name]) for t in shipped.tables})}
     for size in sizes:
-        choices = [table_of_size(lobe, size, size) for lobe in model.lobes]
-        chosen[str(size)] = [(choice.table, choice.errors) for choice in choices]
-    return _model(shipped, chosen)
+        choices = {name: table_of_size(exact[name], size, size) for name in names}
+        baked = assemble(model, {name: choice.table for name, choice in choices.items()})
+        chosen[str(size)] = _size(baked, {name: choice.errors for name, choice in choices.items()})
+    return {"lobes": lobes, "sizes": chosen}
 
 
-def _model(shipped: Sequence[Table], chosen: dict[str, list[tuple[Table, Errors | None]]]) -> dict:
-    sizes = {size: [_table(table, errors) for table, errors in tables] for size, tables in chosen.items()}
-    return {"azimuth": int(shipped[1].azimuth == SUM), "sizes": sizes}
+def _size(model: BakedModel, errors: Mapping[str, Errors]) -> dict:
+    return {
+        "stream": _packed(stream(model)),
+        "tables": [_table(table, errors.get(table.name)) for table in model.tables],
+    }
 
 
 def _table(table: Table, errors: Errors | None) -> dict:
-    texels = np.ascontiguousarray(table.texels, "<f4").tobytes()
     return {
         "name": table.name,
         "width": table.width,
         "height": table.height,
-        "axis": axis_numbers(table),
-        "texels": base64.b64encode(texels).decode("ascii"),
+        "theta_r": table.theta_r_range,
+        "domain": table.domain,
+        "texels": _packed(table.texels),
         "variance": errors and [float(f"{x:.3g}") for x in errors.variance],
         "weight": errors and [float(f"{x:.5g}") for x in errors.weight],
     }
+
+
+def _packed(floats: np.ndarray) -> str:
+    """Little-endian 32-bit floats, deflated, as base64."""
+    return base64.b64encode(zlib.compress(np.ascontiguousarray(floats, "<f4").tobytes(), 9)).decode("ascii")
 
 
 def _script(name: str, text: str) -> str:

@@ -17,11 +17,14 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         "view",
         help="write an interactive HTML page of a model's lobes",
         description="Writes one self-contained HTML page that draws the lobes of baked models with WebGL2 "
-        "and the shipped shader: samples, densities, textures and errors, for every theta_r.",
+        "and the shipped shader: samples, densities, shares, textures and errors, at any theta_r and offset.",
         epilog=EXAMPLES,
     )
     parser.add_argument(
-        "directory", type=Path, nargs="*", help="directories of models (default: luts/fitted luts/printed)"
+        "directory",
+        type=Path,
+        nargs="*",
+        help="directories of models (default: luts/brown luts/fitted luts/printed)",
     )
     parser.add_argument(
         "--out",
@@ -37,7 +40,8 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
 def run(args: argparse.Namespace) -> int:
     from ..view import write_explorer
 
-    out = write_explorer(args.directory or [Path("luts/fitted"), Path("luts/printed")], args.out)
+    models = [Path("luts", name) for name in ("brown", "fitted", "printed")]
+    out = write_explorer(args.directory or models, args.out)
     print(f"{out}  {out.stat().st_size / 1024:.0f} KB")
     if args.open:
         import webbrowser

@@ -3,9 +3,8 @@
 const data = JSON.parse(document.getElementById("data").textContent);
 const byId = id => document.getElementById(id);
 const DEGREE = Math.PI / 180;
-const LOBES = ["direct", "multiple", "mixture"];
-const USED = { direct: [0, 1], multiple: [2], mixture: [0, 1, 2] }; // tables of a lobe
-const KEYS = ["#6fd3ff", "#c792ea", "#9ee493"];                     // a colour for each table
+const HAIR = "hair"; // what the choice of a lobe calls the whole mixture
+const key = k => `hsl(${(200 + 137.5 * k) % 360} 75% 68%)`; // a colour for each table or lobe
 const STOPS = ["#0d1020", "#3a1d6e", "#8c2981", "#de4968", "#fe9f6d", "#fcfdbf"].map(
     hex => [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16) / 255));
 const SHOWN = 3000;           // points on the sphere
@@ -14,9 +13,9 @@ const THETA_BINS = 45, PHI_BINS = 48, CURVE = 361;
 const MOST = 4000000;         // samples at which "keep drawing" stops
 
 const state = {
-    model: data.models.fitted ? "fitted" : Object.keys(data.models)[0],
-    lobe: "direct", size: "shipped", samples: 10000,
-    theta_r: 20, phi_r: 0, weight: 0.5, u_theta: 0.5, u_phi: 0.5, u_lobe: 0.25, // angles in degrees
+    model: Object.keys(data.models)[0],
+    lobe: HAIR, size: "shipped", samples: 10000,
+    theta_r: 20, phi_r: 0, offset: 0, u_theta: 0.5, u_phi: 0.5, u_lobe: 0.25, // angles in degrees
     yaw: 1.0, pitch: 0.35, keep: false,
 };
 
@@ -67,11 +66,12 @@ function linked(vertex, fragment, feedback = []) {
     return { program, at };
 }
 
-let drawing, evaluating, globe, dots, cloud, capture, source;
+let drawing, evaluating, sharing, globe, dots, cloud, capture, source;
 
 function prepare() {
     drawing = linked(onModel("draw.glsl"), glsl("nothing.glsl"), ["drawn"]);
-    evaluating = linked(onModel("evaluate.glsl"), glsl("nothing.glsl"), ["inverted", "evaluated"]);
+    evaluating = linked(onModel("evaluate.glsl"), glsl("nothing.glsl"), ["evaluated"]);
+    sharing = linked(onModel("shares.glsl"), glsl("nothing.glsl"), ["share"]);
     globe = linked(glsl("screen.glsl"), onModel("sphere.glsl"));
     dots = linked(glsl("point.glsl"), glsl("dot.glsl"));
     [cloud, capture, source] = [gl.createBuffer(), gl.createBuffer(), gl.createBuffer()];
@@ -80,49 +80,55 @@ function prepare() {
         gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
 }
 
-const tables = () => data.models[state.model].sizes[state.size];
+const model = () => data.models[state.model];
+const tables = () => model().sizes[state.size].tables;
+const lobes = () => model().lobes;
+const lobeNames = () => [...(lobes().length > 1 ? [HAIR] : []), ...lobes().map(l => l.name)];
 
-function texels(table) {
-    if (!table.decoded)
-        table.decoded = new Float32Array(Uint8Array.from(atob(table.texels), c => c.charCodeAt(0)).buffer);
-    return table.decoded;
+/* Numbers of the lobes that are shown. */
+function parts() {
+    const all = lobes().map((_, k) => k);
+    return state.lobe === HAIR ? all : all.filter(k => lobes()[k].name === state.lobe);
 }
 
-let axes = new Float32Array(36);
+const used = () => new Set(parts().flatMap(k => lobes()[k].tables));
 
-/* The three tables, one below another in one texture. */
+async function unpacked(text) {
+    const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+    const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    return new Float32Array(await new Response(plain).arrayBuffer());
+}
+
+/* Every stream and table as floats, once. */
+async function unpackAll() {
+    for (const { sizes } of Object.values(data.models))
+        for (const size of Object.values(sizes)) {
+            size.stream = await unpacked(size.stream);
+            for (const table of size.tables)
+                table.decoded = await unpacked(table.texels);
+        }
+}
+
 function upload() {
-    const width = Math.max(...tables().map(t => t.width));
-    const height = tables().reduce((sum, t) => sum + t.height, 0);
-    const all = new Float32Array(width * height);
-    let row = 0;
-    tables().forEach((table, k) => {
-        const x = texels(table);
-        for (let j = 0; j < table.height; ++j)
-            all.set(x.subarray(j * table.width, (j + 1) * table.width), (row + j) * width);
-        axes.set([row, ...table.axis], 12 * k);
-        row += table.height;
-    });
+    const texels = model().sizes[state.size].stream;
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, width, height, 0, gl.RED, gl.FLOAT, all);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, texels.length / 4096, 0, gl.RGBA, gl.FLOAT, texels);
 }
 
-const viewer = () => [state.theta_r * DEGREE, state.phi_r * DEGREE];
+const viewer = () => [state.theta_r * DEGREE, state.phi_r * DEGREE, state.offset];
 
 function use(p) {
     gl.useProgram(p.program);
-    gl.uniform1i(p.at("tables"), 0);
-    gl.uniform4fv(p.at("axes"), axes);
-    gl.uniform1i(p.at("azimuth"), data.models[state.model].azimuth);
-    gl.uniform2fv(p.at("viewer"), viewer());
-    gl.uniform1i(p.at("lobe"), LOBES.indexOf(state.lobe));
-    gl.uniform1f(p.at("weight"), state.weight);
+    gl.uniform1i(p.at("hairs"), 0);
+    gl.uniform3fv(p.at("viewer"), viewer());
+    gl.uniform1i(p.at("lobe"), state.lobe === HAIR ? -1 : parts()[0]);
 }
 
 /* Runs a vertex shader over n inputs of `size` floats; returns the n outputs of `floats` floats, left in `target`. */
-function run(p, name, input, size, floats, target) {
+function run(p, name, input, size, floats, target, part = 0) {
     const n = input.length / size;
     use(p);
+    gl.uniform1i(p.at("part"), part);
     gl.bindBuffer(gl.ARRAY_BUFFER, source);
     gl.bufferData(gl.ARRAY_BUFFER, input, gl.STREAM_DRAW);
     const slot = gl.getAttribLocation(p.program, name);
@@ -145,7 +151,10 @@ function run(p, name, input, size, floats, target) {
 
 const draws = numbers => run(drawing, "numbers", numbers, 3, 4, cloud);
 const drawOne = numbers => run(drawing, "numbers", numbers, 3, 4, capture);
-const evaluate = directions => run(evaluating, "direction", directions, 2, 5, capture);
+const evaluate = (directions, part) => run(evaluating, "direction", directions, 2, 3, capture, part);
+
+/* (share, turn, side) of lobe k at each offset. */
+const sharesAt = (offsets, k) => run(sharing, "place", Float32Array.from(offsets.flatMap(h => [h, k])), 2, 3, capture);
 
 /* ---- samples, histograms, chi^2 --------------------------------------------------------------------------------- */
 
@@ -176,28 +185,32 @@ function drawSamples() {
 
 const edges = (n, low, high) => Float64Array.from({ length: n + 1 }, (_, k) => low + (high - low) * k / n);
 
-/* Probability of each bin between the edges, from the shader's inverse: a difference of two numbers u. The azimuth's
- * numbers start again within the bin where the relative azimuth passes 0. */
-function probabilities(along, numbers) {
-    const u = (lobe, k) => numbers[5 * k + 2 * lobe + along];
-    const weights = { direct: [1, 0], multiple: [0, 1], mixture: [state.weight, 1 - state.weight] }[state.lobe];
-    return Float64Array.from({ length: numbers.length / 5 - 1 }, (_, k) => weights.reduce((sum, w, lobe) => {
-        let mass = u(lobe, k + 1) - u(lobe, k);
-        if (along === 1 && mass < 0)
-            mass += 1;
-        return sum + w * mass;
-    }, 0));
+/* Probability of each bin between the edges along one angle, from the shader's inverse: a difference of two numbers u. The
+ * azimuth's numbers start again within the bin where the relative azimuth passes 0, and fall where the hair is mirrored. */
+function probabilities(along, at) {
+    const directions = new Float32Array(2 * at.length), p = new Float64Array(at.length - 1);
+    at.forEach((x, k) => { directions[2 * k + along] = x; });
+    for (const part of parts()) {
+        const [share, , side] = state.lobe === HAIR ? sharesAt([state.offset], part) : [1, 0, 1];
+        const uniform = lobes()[part].tables.length === 1;
+        const sign = along === 1 && !uniform && state.lobe === HAIR ? side : 1;
+        const u = evaluate(directions, part).filter((_, k) => k % 3 === along);
+        let sum = 0;
+        for (let k = 0; k < p.length; ++k) {
+            let mass = sign * (u[k + 1] - u[k]);
+            if (along === 1 && mass < 0)
+                mass += 1;
+            if (along === 1 && uniform && k === p.length - 1) // the last edge is the first
+                mass = Math.max(0, 1 - sum);
+            sum += mass;
+            p[k] += share * mass;
+        }
+    }
+    return p;
 }
 
 function expected(along) {
-    const n = along ? PHI_BINS : THETA_BINS;
-    const at = along ? edges(n, -Math.PI, Math.PI) : edges(n, -Math.PI / 2, Math.PI / 2);
-    const directions = new Float32Array(2 * (n + 1));
-    at.forEach((x, k) => { directions[2 * k + along] = x; });
-    const p = probabilities(along, evaluate(directions));
-    if (along && state.lobe !== "direct") // the last edge is the first: a uniform azimuth has nothing left to subtract
-        p[n - 1] = Math.max(0, 1 - p.slice(0, n - 1).reduce((a, b) => a + b, 0));
-    return p;
+    return probabilities(along, along ? edges(PHI_BINS, -Math.PI, Math.PI) : edges(THETA_BINS, -Math.PI / 2, Math.PI / 2));
 }
 
 /* Pearson's chi^2, neighbouring bins joined until at least five samples are expected. */
@@ -228,6 +241,8 @@ function upperTail(value, degrees) {
     for (let g = degrees % 2 ? 0.5 : 1; g <= a; ++g)
         logGamma += Math.log(g);
     let term = Math.exp(a * Math.log(Math.max(x, 1e-300)) - x - logGamma), sum = 0;
+    if (term === 0 && x > a) // beyond what a double can tell from 0
+        return 0;
     for (let k = 1; k < 5000 && term > 1e-17 * sum; ++k) {
         sum += term;
         term *= x / (a + k);
@@ -238,10 +253,7 @@ function upperTail(value, degrees) {
 /* Density per radian along one angle on a fine grid, as differences of the inverse. */
 function marginal(along) {
     const [low, high] = along ? [-Math.PI, Math.PI] : [-Math.PI / 2, Math.PI / 2];
-    const at = edges(CURVE, low, high);
-    const directions = new Float32Array(2 * (CURVE + 1));
-    at.forEach((x, k) => { directions[2 * k + along] = x; });
-    return probabilities(along, evaluate(directions)).map(p => p * CURVE / (high - low));
+    return probabilities(along, edges(CURVE, low, high)).map(p => p * CURVE / (high - low));
 }
 
 /* ---- pictures ------------------------------------------------------------------------------------------------- */
@@ -317,7 +329,7 @@ function paintMarks() {
         g.lineTo(width / 2 + dx * 1.12, width / 2 + dy * 1.12);
         g.stroke();
     }
-    mark(g, onScreen(...viewer(), width), "viewer", "#ffb454", width);
+    mark(g, onScreen(...viewer().slice(0, 2), width), "viewer", "#ffb454", width);
     mark(g, onScreen(one.theta_i, one.phi_i, width), "sample", "#ffffff", width);
 }
 
@@ -366,7 +378,7 @@ function axesOf(sheetOf, x, y) {
     }
     for (const v of x.ticks) {
         g.textAlign = "center";
-        g.fillText(`${v}°`.replace("-", "−"), px(v), height - 6);
+        g.fillText(x.text ? x.text(v) : `${v}°`.replace("-", "−"), px(v), height - 6);
     }
     g.textAlign = "left";
     return { px, py };
@@ -411,24 +423,26 @@ function paintCharts() {
     tellFit("phi_fit", chiSquare(counted.phi, expected(1), counted.n));
 }
 
-const rowAt = table => Math.min(Math.max((viewer()[0] - table.axis[3]) * table.axis[4], 0), table.height - 1);
+function rowAt(table) {
+    const [low, high] = table.theta_r, last = table.height - 1;
+    return Math.min(Math.max((viewer()[0] - low) / (high - low) * last, 0), last);
+}
 
 function paintTextures() {
-    const section = byId("textures");
-    if (!section.children.length)
-        section.innerHTML = [0, 1, 2].map(k => `<figure><figcaption></figcaption><canvas id="texture_${k}" role="img"></canvas>`
-            + `<p class="note" id="row_${k}"></p></figure>`).join("");
+    const section = byId("textures"), shownTables = used();
+    section.innerHTML = tables().map((_, k) => `<figure><figcaption></figcaption><canvas id="texture_${k}" role="img"></canvas>`
+        + `<p class="note" id="row_${k}"></p></figure>`).join("");
     tables().forEach((table, k) => {
-        const figure = section.children[k], canvas = byId(`texture_${k}`), x = texels(table), row = rowAt(table);
-        const bytes = 4 * table.width * table.height;
-        figure.className = USED[state.lobe].includes(k) ? "" : "unused";
+        const figure = section.children[k], canvas = byId(`texture_${k}`), x = table.decoded, row = rowAt(table);
+        const bytes = 8 * table.width * table.height, [low, high] = table.domain;
+        figure.className = shownTables.has(k) ? "" : "unused";
         figure.querySelector("figcaption").innerHTML = `<b>${table.name}</b><br>${table.width}×${table.height}, `
             + (bytes < 1024 ? `${bytes} B` : `${(bytes / 1024).toFixed(1)} KB`);
-        canvas.setAttribute("aria-label", `Texels of ${table.name}: u to the right, theta_r upwards`);
+        canvas.setAttribute("aria-label", `Angles of ${table.name}: u to the right, theta_r upwards`);
         const image = new ImageData(table.width, table.height);
         x.forEach((value, at) => {
             const j = table.height - 1 - Math.floor(at / table.width), i = at % table.width;
-            image.data.set([...colour((value - table.axis[5]) / (table.axis[6] - table.axis[5])), 255], 4 * (j * table.width + i));
+            image.data.set([...colour((value - low) / (high - low)), 255], 4 * (j * table.width + i));
         });
         const small = new OffscreenCanvas(table.width, table.height);
         small.getContext("2d").putImageData(image, 0, 0);
@@ -442,9 +456,43 @@ function paintTextures() {
         g.strokeStyle = "#6fd3ff";
         g.lineWidth = 1.8;
         g.strokeRect(-4, y, width + 8, 0.01);
-        const unit = v => `${Math.round(v / DEGREE)}°`.replace("-", "−");
-        byId(`row_${k}`).textContent = `row ${row.toFixed(2)} of ${table.height - 1}; ${unit(table.axis[5])} dark to ${unit(table.axis[6])} bright`;
+        byId(`row_${k}`).textContent = `row ${row.toFixed(2)} of ${table.height - 1}; ${degrees(low, 0)} dark to ${degrees(high, 0)} bright`;
     });
+}
+
+/* Shares, one upon another, over the offset; beside them a table of those at this offset. */
+function paintShares() {
+    byId("shares").hidden = lobes().length < 2;
+    if (lobes().length < 2)
+        return;
+    const n = 201, offsets = Array.from({ length: n }, (_, k) => 2 * k / (n - 1) - 1);
+    const s = sheet(byId("share_chart"));
+    const x = { low: -1, high: 1, ticks: [-1, -0.5, 0, 0.5, 1], text: v => String(v).replace("-", "−") };
+    const { px, py } = axesOf(s, x, { low: 0, high: 1, ticks: [0, 0.5, 1], text: String });
+    const below = new Float64Array(n);
+    lobes().forEach((_, lobe) => {
+        const share = sharesAt(offsets, lobe).filter((_, k) => k % 3 === 0), above = below.map((y, k) => y + share[k]);
+        s.g.fillStyle = key(lobe);
+        s.g.globalAlpha = parts().includes(lobe) ? 0.85 : 0.3;
+        s.g.beginPath();
+        offsets.forEach((h, k) => s.g.lineTo(px(h), py(above[k])));
+        [...offsets].reverse().forEach((h, k) => s.g.lineTo(px(h), py(below[n - 1 - k])));
+        s.g.fill();
+        below.set(above);
+    });
+    s.g.globalAlpha = 1;
+    s.g.strokeStyle = "#ffb454";
+    s.g.lineWidth = 1.6;
+    s.g.beginPath();
+    s.g.moveTo(px(state.offset), py(0));
+    s.g.lineTo(px(state.offset), py(1));
+    s.g.stroke();
+    byId("share_table").tBodies[0].innerHTML = lobes().map((lobe, k) => {
+        const [share, turn, side] = sharesAt([state.offset], k);
+        const turned = lobe.tables.length > 1 ? degrees(side * turn, 1) : "–";
+        return `<tr class="${parts().includes(k) ? "" : "unused"}" style="--key:${key(k)}"><td>${lobe.name}</td>`
+            + `<td id="share_${k}">${share.toFixed(4)}</td><td id="turn_${k}">${turned}</td></tr>`;
+    }).join("");
 }
 
 /* The measured error nearest to this theta_r: every row and three places between two rows were measured. */
@@ -468,8 +516,8 @@ function paintErrors() {
     tables().forEach((table, k) => {
         if (!table.variance)
             return;
-        s.g.strokeStyle = KEYS[k];
-        s.g.globalAlpha = USED[state.lobe].includes(k) ? 1 : 0.3;
+        s.g.strokeStyle = key(k);
+        s.g.globalAlpha = used().has(k) ? 1 : 0.3;
         s.g.lineWidth = 1.6;
         s.g.beginPath();
         table.variance.forEach((v, n) => s.g.lineTo(px(-90 + 180 * n / (table.variance.length - 1)), py(Math.log10(Math.max(v, 1e-9)))));
@@ -484,7 +532,7 @@ function paintErrors() {
     s.g.stroke();
     byId("error_table").tBodies[0].innerHTML = tables().map((table, k) => {
         const { variance, weight } = errorAt(table);
-        return `<tr class="${USED[state.lobe].includes(k) ? "" : "unused"}" style="--key:${KEYS[k]}"><td>${table.name}</td>`
+        return `<tr class="${used().has(k) ? "" : "unused"}" style="--key:${key(k)}"><td>${table.name}</td>`
             + `<td>${rowAt(table).toFixed(2)}</td><td id="variance_${k}">${variance.toExponential(2)}</td>`
             + `<td id="weight_${k}">${weight.toFixed(3)}</td></tr>`;
     }).join("");
@@ -494,53 +542,53 @@ function paintErrors() {
 
 let one = { theta_i: 0, phi_i: 0 };
 
+const degrees = (angle, digits) => `${(angle / DEGREE).toFixed(digits)}°`.replace("-", "−");
+
 function tellOne() {
     const s = drawOne(new Float32Array([state.u_theta, state.u_phi, state.u_lobe]));
     one = { theta_i: s[0], phi_i: s[1], pdf_angle: s[2], pdf_solid_angle: s[3] };
     for (const [name, value] of Object.entries(one))
         byId(name).textContent = value.toPrecision(7).replace("-", "−");
-    const numbers = evaluate(new Float32Array([s[0], s[1]])), first = state.lobe === "multiple" ? 2 : 0;
-    byId("back").textContent = state.lobe === "mixture" ? "–"
-        : `u = (${numbers[first].toFixed(6)}, ${numbers[first + 1].toFixed(6)})`;
-    one.inverted = Array.from(numbers.slice(0, 4));
-    one.density = numbers[4];
+    for (const name of ["theta_i", "phi_i"])
+        byId(`${name}_degrees`).textContent = degrees(one[name], 3);
+    const [u_theta, u_phi, density] = evaluate(new Float32Array([s[0], s[1]]), parts()[0]);
+    byId("back").textContent = state.lobe === HAIR ? "–" : `u = (${u_theta.toFixed(6)}, ${u_phi.toFixed(6)})`;
+    one.inverted = [u_theta, u_phi];
+    one.density = density;
 }
 
 /* ---- controls ------------------------------------------------------------------------------------------------- */
 
 const SLIDERS = {
-    theta_r: v => `${v.toFixed(1)}°`, phi_r: v => `${v.toFixed(0)}°`, weight: v => v.toFixed(2),
+    theta_r: v => `${v.toFixed(1)}°`, phi_r: v => `${v.toFixed(0)}°`, offset: v => `${v.toFixed(2)} = sin ${degrees(Math.asin(v), 1)}`,
     u_theta: v => v.toFixed(3), u_phi: v => v.toFixed(3), u_lobe: v => v.toFixed(3),
 };
 
-function choices(name, values, text) {
+function radios(name, values, text) {
+    if (!values.includes(state[name]))
+        state[name] = values[0];
     byId(name).innerHTML = values.map(v => `<label><input type="radio" name="${name}" value="${v}"`
-        + `${String(state[name]) === String(v) ? " checked" : ""}>${text(v)}</label>`).join("");
-    byId(name).addEventListener("change", event => {
-        state[name] = name === "samples" ? Number(event.target.value) : event.target.value;
-        if (name === "model")
-            sizes();
-        changed();
-    });
+        + `${state[name] === v ? " checked" : ""}>${text(v)}</label>`).join("");
 }
 
-function sizes() {
-    const names = Object.keys(data.models[state.model].sizes).sort((a, b) => (b === "shipped") - (a === "shipped") || a - b);
-    if (!names.includes(state.size))
-        state.size = names[0];
-    byId("size").innerHTML = names.map(v => `<label><input type="radio" name="size" value="${v}"`
-        + `${state.size === v ? " checked" : ""}>${v === "shipped" ? v : `${v}²`}</label>`).join("");
+/* What a model offers to choose from. */
+function offered() {
+    radios("lobe", lobeNames(), v => v);
+    const order = (a, b) => (b === "shipped") - (a === "shipped") || a - b;
+    radios("size", Object.keys(model().sizes).sort(order), v => v === "shipped" ? v : `${v}²`);
 }
 
 function controls() {
-    choices("model", Object.keys(data.models), v => v);
-    choices("lobe", LOBES, v => v);
-    choices("samples", [1000, 10000, 100000], v => v.toLocaleString("en"));
-    sizes();
-    byId("size").addEventListener("change", event => {
-        state.size = event.target.value;
-        changed();
-    });
+    radios("model", Object.keys(data.models), v => v);
+    radios("samples", [1000, 10000, 100000], v => v.toLocaleString("en"));
+    offered();
+    for (const name of ["model", "lobe", "size", "samples"])
+        byId(name).addEventListener("change", event => {
+            state[name] = name === "samples" ? Number(event.target.value) : event.target.value;
+            if (name === "model")
+                offered();
+            changed();
+        });
     for (const name of Object.keys(SLIDERS)) {
         byId(name).value = state[name];
         byId(name).addEventListener("input", event => {
@@ -576,7 +624,7 @@ function turnBy(yaw, pitch) {
 
 /* ---- from a change to a picture ------------------------------------------------------------------------------- */
 
-let waiting = null; // "turn" repaints the sphere, "paint" everything, "draw" also draws new samples
+let ready = false, waiting = null; // "turn" repaints the sphere, "paint" everything, "draw" also draws new samples
 
 function schedule(what = state.keep ? "more" : "paint") {
     const order = ["turn", "paint", "more", "draw"];
@@ -602,14 +650,15 @@ function update() {
     if (what !== "turn") {
         for (const [name, text] of Object.entries(SLIDERS))
             byId(`${name}_text`).textContent = text(state[name]).replace("-", "−");
-        byId("weight_label").className = byId("u_lobe_label").className = state.lobe === "mixture" ? "slider" : "slider off";
-        byId("weight").disabled = byId("u_lobe").disabled = state.lobe !== "mixture";
+        byId("offset_label").className = byId("u_lobe_label").className = state.lobe === HAIR ? "slider" : "slider off";
+        byId("offset").disabled = byId("u_lobe").disabled = state.lobe !== HAIR;
         tellOne();
         paintRamp();
         paintCharts();
     }
     if (what === "draw" || what === "paint") {
         paintTextures();
+        paintShares();
         paintErrors();
     }
     paintSphere();
@@ -617,19 +666,19 @@ function update() {
         schedule("more");
 }
 
-function start() {
+async function start() {
     byId("version").textContent = data.version;
-    window.explorer = { state, counted, one: () => one, idle: () => waiting === null };
+    window.explorer = { state, counted, one: () => one, idle: () => ready && waiting === null };
     if (!gl)
         throw new Error("this browser offers no WebGL2");
+    await unpackAll();
     prepare();
     controls();
     changed();
+    ready = true;
 }
 
-try {
-    start();
-} catch (error) {
+start().catch(error => {
     byId("trouble").textContent = `The explorer cannot run: ${error.message}`;
     byId("trouble").hidden = false;
-}
+});

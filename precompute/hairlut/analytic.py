@@ -2,7 +2,7 @@
 """The closed form of a Gaussian lobe cut to its domain (derivation.md). The bake never imports it: it is what
 the numerical integration is tested against.
 
-All of it works on logarithms of the smaller tails, with alpha and beta the ends of the domain in units of
+It works on logarithms of the smaller tails, with alpha and beta the ends of the domain in units of
 sigma from the mean: nothing is ever taken from 1, and a mass may underflow.
 """
 

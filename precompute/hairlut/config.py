@@ -59,30 +59,30 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="python -m hairlut.config", description="Prints where parts of the installation lie."
     )
     parser.add_argument(
-        "--cmake-dir", action="append_const", dest="asked", const=cmake_dir, help="hairlut-config.cmake"
+        "--cmake-dir", action="append_const", dest="requested", const=cmake_dir, help="hairlut-config.cmake"
     )
     parser.add_argument(
-        "--include-dir", action="append_const", dest="asked", const=include_dir, help="hairlut.h"
+        "--include-dir", action="append_const", dest="requested", const=include_dir, help="hairlut.h"
     )
     parser.add_argument(
         "--luts-dir",
         action="append_const",
-        dest="asked",
+        dest="requested",
         const=lambda: data("luts"),
         help="the shipped models",
     )
     parser.add_argument(
         "--shaders-dir",
         action="append_const",
-        dest="asked",
+        dest="requested",
         const=lambda: data("shaders"),
         help="the shaders",
     )
-    asked = parser.parse_args(argv).asked
-    if not asked:
+    requested = parser.parse_args(argv).requested
+    if not requested:
         parser.error("expected --cmake-dir, --include-dir, --luts-dir or --shaders-dir")
     try:
-        for each in asked:
+        for each in requested:
             print(each())
     except HairlutError as error:
         print(f"hairlut: {error}", file=sys.stderr)

@@ -69,7 +69,7 @@ class Cubics:
         return (np.arange(len(place))[:, None] + place).ravel()
 
     def _piece(self, key: Array, place: Array, row: Array) -> Array:
-        """(6, ...) low end, mass below it, width, and coefficients of the pieces that hold these places."""
+        """(6, ...) low end, mass below it, width, coefficients of the pieces that contain these places."""
         first = self._first[row]
         i = np.searchsorted(key, row + place, side="right") - 1
         i = np.clip(i, first, first + self._last[row])

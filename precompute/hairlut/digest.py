@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The digest of an image's texels, by which a changed file or one of another bake is noticed."""
+"""The digest of an image's texels: it shows that a file was changed or is of another bake."""
 
 import zlib
 from collections.abc import Sequence

@@ -4,8 +4,8 @@
 Target "c" is a C source against the public header (csource.py); "raw" and "npz" are plain arrays (arrays.py),
 of which "raw" also writes a model as the stream that the shaders read.
 There is no KTX2 or DDS: the one maintained writer of float KTX2 for Python, pyktx, needs the native libktx,
-which neither pip nor Debian installs, and none was found for float DDS. A raw file is what those containers
-hold after their header.
+which neither pip nor Debian installs; for DDS of floats there is none. A raw file is what those containers
+have behind their header.
 """
 
 from collections.abc import Callable, Sequence

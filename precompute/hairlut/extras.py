@@ -7,6 +7,6 @@ from .errors import HairlutError
 
 
 def needed_for_plots() -> None:
-    """HairlutError with the command that brings matplotlib, if it is not there."""
+    """HairlutError with the command that installs matplotlib, if it is missing."""
     if importlib.util.find_spec("matplotlib") is None:
         raise HairlutError("matplotlib is not installed: .venv/bin/pip install 'precompute[report]'")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One look for all figures: colours that colour-blind readers can tell apart, and files that are the same
+"""One style for all figures: colours that colour-blind readers can distinguish, and files that are the same
 every time."""
 
 from io import BytesIO

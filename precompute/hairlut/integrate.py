@@ -16,7 +16,7 @@ from .errors import HairlutError
 from .lobes import Array, Lobe, LogDensity
 
 ORDER = 10
-FIRST_PANELS = 128  # with 3 * ORDER points each: what is wider than 1/2000 of the domain cannot slip through
+FIRST_PANELS = 128  # with 3 * ORDER points each: what is wider than 1/2000 of the domain is not missed
 PORTION = 512  # panels evaluated at once
 MAX_PANELS = 4096
 MAX_ROUNDS = 100
@@ -223,7 +223,7 @@ def _unresolved(rows: Rows, panels: _Panels, scale: Array) -> Array:
     nearer = nearer[panels.row, _place(panels.row)]
     split = error > np.maximum(TOLERANCE * nearer, panels.noise * panels.fine * factor)
     split |= panels.edge > np.maximum(panels.top + 1, scale[panels.row] - NEGLIGIBLE)
-    # A jump, or an end where the density is unbounded, is left alone when no angle could tell the difference.
+    # A jump, or an end where the density is unbounded, is not bisected below the spacing of floats.
     h = panels.b - panels.a
     narrow = h <= EPS * (rows.high - rows.low)[panels.row]
     harmless = narrow & (error <= TOLERANCE * mass.sum(axis=1)[panels.row])

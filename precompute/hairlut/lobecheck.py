@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is wrong with a lobe from a model file: found before it is baked, and named where it happens."""
+"""Checks of a lobe from a model file, before it is baked; an error names the lobe, theta_r and the reason."""
 
 from __future__ import annotations
 
@@ -153,7 +153,8 @@ def _mass_near_breakpoints(lobe: Lobe, angle: float) -> bool:
 
 
 def _check_elementwise(lobe: Lobe, where: str, x: Array, theta_r: Array, values: Array) -> None:
-    """A density that looks at its whole array, say for its maximum, has other values in a part of it."""
+    """HairlutError for a density that uses its whole array, say its maximum: a part of the array gives other
+    values."""
     for j in (0, ANGLES // 3, ANGLES - 1):
         k = np.array([POINTS // 5, (2 * POINTS) // 3])
         part = _evaluate(lobe, where, x[k], theta_r[j : j + 1])

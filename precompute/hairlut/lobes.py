@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The lobes: equations (2) to (4) of the source text, in its two readings.
 
+The source text is the chapter "Probability density function" of J. Lemein's thesis draft on importance
+sampling for dual scattering (Utrecht University, repository jlemein/hair-rendering-thesis). `direct` is the
+light that one fibre scatters towards the viewer, R, TT and TRT together; `multiple` is light that passed
+through other fibres before (Zinke et al. 2008). derivation.md beside this file prints the equations; the
+README compares the readings.
+
 Every lobe is a density of one angle x given the viewer's inclination theta_r: x is the incident inclination
 theta_i, or the relative azimuth phi. It is cut to its domain, not wrapped, and need not be normalised. All
 angles are in radians.

@@ -86,7 +86,7 @@ class Mixture:
 
 
 def constant(lobes: tuple[str, ...], shares: Sequence[float] | None = None) -> Mixture:
-    """The mixture of lobes whose shares (None: equal ones) depend on nothing, and which are not turned."""
+    """A mixture with constant shares (None: equal ones) and no turns."""
     share = np.ones(len(lobes)) if shares is None else np.asarray(shares, float)
     share = (share / share.sum())[:, None, None]
     return Mixture(lobes, np.zeros(1), np.zeros(1), share, np.zeros_like(share))

@@ -55,7 +55,7 @@ SETTINGS = {
     "SHARES": (dict, "a number for each lobe"),
     "INPUTS": ((tuple, list), "a tuple of file names"),
 }
-"""Of a Python file: the type of each, and what it is in words."""
+"""Settings of a Python file: the type of each, and a description for errors."""
 
 KEPT = 16  # tabulated lobes: more than a model has
 
@@ -172,7 +172,7 @@ def load(path: Path) -> Model:
         for lobe in model.lobes:
             if path.suffix == ".py":  # TOML says the unit
                 check_units(lobe, str(path))
-            if not lobe.exact:  # a closed form comes of data that were checked
+            if not lobe.exact:  # a lobe with a closed form was made from data that were checked
                 check_lobe(lobe, str(path))
     return replace(model, lobes=tuple(_guarded(lobe, path) for lobe in model.lobes))
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def null_device(descriptor: int) -> Iterator[None]:
-    """Lets reads of the file descriptor find nothing, and writes to it go nowhere, within."""
+    """Within the context, reads of the file descriptor return nothing and writes to it are discarded."""
     try:
         kept = os.dup(descriptor)
     except OSError:  # it is closed

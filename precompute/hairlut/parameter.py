@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers in the text of a file's header, and texts of the form "name key=NUMBER", which name a warp."""
+"""Numbers in the text of a file's header, and texts of the form "name key=NUMBER", such as a warp's."""
 
 import math
 import re

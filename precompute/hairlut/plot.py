@@ -89,7 +89,7 @@ def variance(panel, errors: Errors) -> None:
 
 
 def plot_file(path: Path, lobe: Lobe, out: Path) -> Path:
-    """Reads a table and draws it to out/<model>_<table>.png."""
+    """Reads a table and writes out/<model>_<table>.png."""
     from . import exr
 
     table, _ = exr.read(path)

@@ -6,7 +6,7 @@ width until the rows themselves are exact enough, and then only with the height.
 the widths from the narrowest that meets the tolerance on rows alone up to WIDEST times that, the one with the
 fewest texels is taken, at the lowest height that does. The table is then measured, and grows by a step
 where the estimate was too good. Tables of one model take the same number of rows where that costs at most
-SHARING of their texels: a renderer then finds the rows of theta_r once.
+SHARING of their texels: a renderer then computes the row of theta_r once.
 
 The warp's e is the power of two of the least V on rows. Only tables whose narrowest cell spans MIN_STEPS
 steps of a float are considered.
@@ -63,7 +63,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Plan:
-    """The size of a table that an estimate found. places: theta_r where the blend of rows costs most."""
+    """The size of a table, chosen by estimates. places: theta_r where the blend of rows costs most."""
 
     sketch: Sketch
     width: int
@@ -245,7 +245,9 @@ def table_of_size(lobe: Lobe, width: int, height: int) -> Choice:
         )
     table = tables[_lightest(tables, lobe, exact)]
     return Choice(
-        table, measure(table, lobe, exact=exact), "size as asked, lightest e within 10% of the least V"
+        table,
+        measure(table, lobe, exact=exact),
+        "size as requested, e of the least largest weight within 10% of the least V",
     )
 
 

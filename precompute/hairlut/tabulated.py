@@ -6,7 +6,7 @@ keeps its mass and the density is continuous. Between two rows the *quantiles* a
 x_j(u) + t x_{j+1}(u): a peak that moves with theta_r moves, where a blend of the densities would make two
 peaks of it. A baked table blends its rows in the same way. The density of the blend is its derivative, 1/q
 = (1-t)/p_j + t/p_{j+1}, each density taken at its own row's quantile. Outside the range of the rows the
-nearest row holds.
+nearest row continues.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .errors import HairlutError
 from .invert import ALL
 
 FLOOR = 1e-4
-"""Share of each row's mass that is spread evenly: where data have nothing, a renderer may have something."""
+"""Share of each row's mass that is uniform: where the data have no light, a renderer may have some."""
 
 MERGE = 1e-4, 1e-8
 """Knots of a blended row that are closer than this part of the domain, or of the mass, are one."""
@@ -75,7 +75,7 @@ class TabulatedDensity:
         return 0
 
     def rows(self, theta_r: np.ndarray) -> Cubics:
-        """The rows at theta_r (R,), kept for as long as the same ones are asked for."""
+        """The rows at theta_r (R,), cached while the calls are for the same theta_r."""
         if self._last is None or not np.array_equal(self._last[0], theta_r):
             self._last = np.array(theta_r), self._blended(theta_r)
         return self._last[1]

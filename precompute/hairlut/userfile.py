@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs a user's Python file, and the functions it defines, so that whatever they do ends in one clear line.
 
-The code may import the files beside it. It has no standard input, so it can wait for nobody, and what it
-prints goes to standard error, so it cannot mix with the output of a command. It cannot end the command
-either: sys.exit() is an error like any other.
+The code may import the files beside it. It has no standard input, so it never waits for a person. What it
+prints goes to standard error, apart from the output of the command. It cannot end the command: sys.exit() is
+an error like any other.
 """
 
 from __future__ import annotations

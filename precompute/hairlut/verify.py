@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A model's files checked again from themselves alone: the headers name the lobes, the lobes say what every
-texel must be.
+"""Checks a model's files from the files alone: the headers name the lobes, the lobes say what every texel
+must be.
 
-Nothing that the bake computed is believed. A lobe is found by the model and table that the header names; its
+Every number is computed again. The lobe is that of the model and table that the header names; its
 formula, domain and range must be the header's. Every texel is compared with the quantile and the slope of its
 row, and the errors of the table are measured and compared with those that the header claims. The files of a
 directory must belong together: mixture.exr names its tables by their digests. A model that was fitted to data
@@ -34,7 +34,7 @@ CLAIM_NOISE = 1e-9
 
 @dataclass
 class Report:
-    """What was found out about one file. problems: what is wrong, and where; empty if the file is good.
+    """The result for one file. problems: what is wrong, and where; empty if the file is good.
     note: what could not be checked."""
 
     path: Path
@@ -52,8 +52,8 @@ class Report:
 def verify(path: Path, model: Model | None = None) -> list[Report]:
     """Reports on a file, or on every .exr file below a directory.
 
-    model: where the header names no built-in one. It is found if the directory's manifest names its file,
-    and that is TOML or npz.
+    model: the model, where the header names no built-in one. Not needed if the directory's manifest names
+    its file, and that is TOML or npz.
     """
     path = Path(path)
     if not path.exists() and path.suffix != ".exr":  # a table that is missing is a report of its own
@@ -199,7 +199,7 @@ def _wrong_row(table: Table, quantiles: Array, off: Array, j: int, wrong: Array)
     where = f"row {j} (theta_r = {table.theta_r[j]:.6g} rad)"
     other = int(abs(table.texels[j] - quantiles).max(axis=1).argmin())
     if other != j and abs(table.texels[j] - quantiles[other]).max() < 1e-6:
-        return f"{where} holds the quantiles of row {other}"
+        return f"{where} contains the quantiles of row {other}"
     i = int(off[j].argmax())
     return (
         f"{where}: {wrong.sum()} of {table.width} texels are wrong, worst in column {i}: "

@@ -7,8 +7,8 @@ chain of straight lines, one for each octave of m + e, close to its fourth root.
 when its bits, taken as an integer, are shifted right by two: one integer operation in place of two square
 roots. Columns are dense near the ends, where a quantile function is steep, and F's slope stays finite there.
 
-F bends at every power of two. That costs nothing, because a cell is a parabola in u and not in the column
-(interpolant.py): the warp only chooses where the knots lie.
+F bends at every power of two. That costs nothing, because a cell is a curve in u and not in the column
+(cell.py): the warp only chooses where the knots lie.
 
 Why this one (tests/report/pages/study.md has every alternative on the same measure). A renderer pays for a
 table's relative variance V. With curved cells every warp with dense ends is good enough, and this one is

@@ -57,7 +57,7 @@ def test_chi_square_rejects_a_density_off_by_two_percent(mi, drawn, name, viewer
 
 @pytest.mark.parametrize(("name", "viewer"), CASES, ids=str)
 def test_chi_square_rejects_two_percent_moved_around_the_fibre(mi, drawn, name, viewer):
-    """The integral stays 1, so only the shape of the density can give it away."""
+    """The integral stays 1, so only the shape of the density shows the error."""
     angles, masses = drawn(name, viewer)
     before = np.cumsum(masses.T).reshape(masses.T.shape).T  # column by column, around the fibre
     half = np.where(before < masses.sum() / 2, 1.0, -1.0)
@@ -68,7 +68,7 @@ def test_chi_square_rejects_two_percent_moved_around_the_fibre(mi, drawn, name, 
 @pytest.mark.parametrize("mix", [0.0, 0.5])
 @pytest.mark.parametrize("name", SETTINGS)
 def test_weight_is_value_over_density(mi, name, mix):
-    """The density of a draw is that found again, to the rounding of its direction (test_components.py)."""
+    """The density returned with a sample is that of pdf, to the rounding of its direction."""
     bsdf = make(mi, mix=mix, **SETTINGS[name])
     nested = mi.load_dict(HAIR)
     context, off = mi.BSDFContext(), []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Masses of cells in closed form: the density and the quantiles that integration finds, at less cost."""
+"""Masses of cells in closed form: the density and the quantiles of numerical integration, at less cost."""
 
 from dataclasses import replace
 
@@ -103,7 +103,7 @@ def test_a_slope_that_would_turn_back_is_lowered():
 
 @pytest.mark.parametrize("exponent", [-20, -12, -4, 0])
 def test_a_table_costs_what_its_measurement_by_integration_says(lobe, exponent):
-    """The panels between knots, and the few places at which a search looks, against bisected cells."""
+    """The panels between knots, and the few places that a search evaluates, against bisected cells."""
     by_integration = replace(lobe, exact=None)
     exact = exact_at(lobe, np.linspace(*lobe.theta_r_range, 73))
     table = tabulate(lobe, exact, 48, Warp("octaves", 2.0**exponent), slice(None, None, 2))

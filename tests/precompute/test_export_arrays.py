@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Raw floats, streams and npz give back the same numbers."""
+"""Raw floats, streams and npz read back as the same numbers."""
 
 import json
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""luts/FORMAT.md is true: its worked examples, computed by the page's rules and by nothing of hairlut's."""
+"""luts/FORMAT.md is right: its worked examples, computed by the page's rules without hairlut's code."""
 
 import math
 import re

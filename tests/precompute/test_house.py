@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The house stays in order: data flows one way, and what an engine copies holds nothing else."""
+"""The tree stays in order: imports go one way, and the folders that an engine copies contain nothing else."""
 
 import ast
 from graphlib import CycleError, TopologicalSorter
@@ -43,7 +43,7 @@ def graph(folder: Path) -> dict[str, set[str]]:
     edges = {
         name: imports(path.read_text(), name, path.name == "__init__.py") for name, path in files.items()
     }
-    # a package is loaded before its modules; that alone is no circle
+    # a package is loaded before its modules; that alone is no cycle
     return {
         name: {to for to in found if to in files and not name.startswith(f"{to}.")}
         for name, found in edges.items()
@@ -54,7 +54,7 @@ def test_no_module_imports_itself_through_others():
     TopologicalSorter(graph(PACKAGE)).prepare()
 
 
-def test_a_circle_is_noticed(tmp_path):
+def test_a_cycle_is_noticed(tmp_path):
     (tmp_path / "a.py").write_text(
         "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .b import B\n"
     )
@@ -68,6 +68,6 @@ def test_the_plugin_knows_no_python_package():
         assert not imports(path.read_text(), path.stem, False, top_only=False), path
 
 
-def test_the_textures_folder_holds_nothing_else():
+def test_the_textures_folder_contains_nothing_else():
     files = {path.name if path.suffix != ".exr" else ".exr" for path in LUTS.rglob("*") if path.is_file()}
     assert files <= {".exr", "manifest.json", "FORMAT.md"}

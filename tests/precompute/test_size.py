@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tolerance is met with nothing to spare, and the sizes that the project promises have the errors it
-promises."""
+"""The chosen size is the smallest that meets the tolerance, and shipped sizes have the errors they claim."""
 
 import time
 from dataclasses import replace
@@ -218,7 +217,7 @@ def test_bake_with_a_warp_measures_that_warp(tmp_path, capsys):
         "uniform",
     ]
     assert main([*command, "--out", str(tmp_path)]) == 0
-    assert "size and warp as asked" in capsys.readouterr().out
+    assert "size and warp as requested" in capsys.readouterr().out
     table, errors = read(tmp_path / "fitted" / "direct_theta.exr")
     assert str(table.warp) == "uniform"
     assert errors["relative_variance"] > 0.01

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""hairlut verify finds what is wrong with a file, says where, and passes what is right."""
+"""hairlut verify reports what is wrong with a file, and where, and passes good files."""
 
 import json
 import shutil
@@ -17,7 +17,7 @@ from precompute.conftest import LUTS
 
 @pytest.fixture
 def luts(tmp_path):
-    """A copy of the shipped tables, free to be spoilt."""
+    """A copy of the shipped tables, for tests that change them."""
     for model in ("printed", "fitted"):
         shutil.copytree(LUTS / model, tmp_path / model)
     return tmp_path
@@ -74,8 +74,8 @@ def test_two_rows_swapped(luts):
 
     spoil(path, change)
     found = problems(path)
-    assert "holds the quantiles of row 9" in found[0]
-    assert "holds the quantiles of row 4" in found[1]
+    assert "contains the quantiles of row 9" in found[0]
+    assert "contains the quantiles of row 4" in found[1]
     assert any("relative_variance" in problem for problem in found)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The wheel and the source distribution, used from an empty folder: nothing of the checkout is in reach."""
+"""The wheel and the source distribution, used from an empty folder, without the checkout."""
 
 import os
 import re

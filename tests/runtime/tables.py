@@ -77,7 +77,7 @@ class MemoryTable:
     theta_r_range: tuple[float, float] = (-HALF_PI, HALF_PI)
     warp: int = OCTAVES
     warp_e: float = 2.0**-18
-    size: tuple[int, int] | None = None  # width, height, where the texels' shape is not to be told
+    size: tuple[int, int] | None = None  # width, height, other than the shape of the texels
 
     def c(self) -> CTable:
         """The structure; it borrows the texels."""
@@ -174,7 +174,7 @@ class Mixture:
     share: np.ndarray | None = None
     turn: np.ndarray | None = None
     mirrored: int = 0
-    counts: tuple[int, int] | None = None  # where the lengths of the nodes are not to be told
+    counts: tuple[int, int] | None = None  # other than the lengths of the nodes
 
     def c(self) -> CMixture:
         """The structure; it borrows the arrays."""
@@ -236,7 +236,7 @@ def create(
 
 
 def copy_model(folder: Path, model: str = "fitted") -> Path:
-    """A model's files, to be spoilt."""
+    """Copies of a model's files, for tests that change them."""
     target = folder / model
     shutil.copytree(ROOT / "luts" / model, target)
     return target

@@ -120,7 +120,7 @@ def test_processor_without_avx2_runs_the_portable_kernels(shipped, reference, ol
 
 
 def test_a_kernel_that_the_processor_lacks_ends_the_program(old_processor):
-    """The emulation is awake: dispatch that asks nothing runs into AVX2."""
+    """The emulation works: a build that does not query the processor runs into AVX2."""
     program = compiled("unasked", tool("cc"), "-O1", "-DHAIRLUT_CPU=HAIRLUT_CPU_AVX2")
     done = subprocess.run([*old_processor, program], check=False, capture_output=True, timeout=600)
     assert done.returncode == -signal.SIGILL

@@ -278,7 +278,7 @@ def test_direction_is_that_of_the_lobe_chosen(model):
 
 
 def test_density_is_the_weighted_sum_of_both(model):
-    """Bit for bit where the density is asked for; to rounding where a direction was drawn."""
+    """Bit for bit for pdf; to rounding for sample."""
     theta_r, phi_r, u_lobe, u_theta, u_phi = random_inputs(3)
     given = shares_of(WEIGHT, u_lobe.size)
     theta_i, phi_i, pdf, _ = sample_hair_n(model, given, None, theta_r, phi_r, u_lobe, u_theta, u_phi)
@@ -286,7 +286,7 @@ def test_density_is_the_weighted_sum_of_both(model):
     weights = given * (np.float32(1) / (given[0] + given[1]))
     density = pdf_hair_n(model, given, None, theta_r, phi_r, theta_i, phi_i)
     assert np.array_equal(density, weights[0] * parts[0] + weights[1] * parts[1])
-    # a drawn angle is rounded once more before its density is asked for: in the narrow cells of a lobe beyond
+    # a drawn angle is rounded once more before its density is evaluated: in the narrow cells of a lobe beyond
     # the domain's end that moves the density (test_scalar.py); elsewhere it is the same number
     difference = np.abs(density.astype(float) - pdf) / pdf
     assert np.quantile(difference, 0.99) < 1e-4

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""hairlut_load: what it gives, its results and messages, its memory, its threads. Which files it takes and
-which it refuses: tests/conformance."""
+"""hairlut_load: the model it returns, its results and messages, its memory, its threads. Which files it
+accepts and which it refuses: tests/conformance."""
 
 import ctypes
 import re
@@ -52,7 +52,7 @@ def make_exr():
 
 
 def directory_of(tmp_path: Path, of_format: int) -> Path:
-    """A good model's directory, to be spoilt."""
+    """A copy of a good model's directory, for tests that change it."""
     write = files.write_format_1 if of_format == 1 else files.write_format_2
     return write(tmp_path / f"model{of_format}", SOURCE)
 

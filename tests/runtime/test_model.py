@@ -449,7 +449,7 @@ def test_half_a_pair_of_hooks_is_refused_and_a_zeroed_pair_means_malloc():
 
 def rough(seed: int) -> tables.MemoryTable:
     """Cells from 1e-12 rad to a radian side by side, others in every row, and every second time slopes over
-    all that is accepted: the worst that is let by."""
+    all that is accepted: the worst that is accepted."""
     random = np.random.default_rng(seed)
     width, height = int(random.integers(4, 40)), int(random.integers(2, 9))
     rows = np.zeros((height, width), np.float32)

@@ -59,7 +59,7 @@ def consume(tmp_path, how: str, form: tuple[str, str], *definitions: str) -> Non
 
 
 def test_there_is_a_cxx_compiler_for_the_consumers():
-    """Not a test of the library: says loudly what the others leave out."""
+    """Not a test of the library: fails where the others would be skipped."""
     if not tool("c++"):
         pytest.skip("consumers in C++ are not built: apt-get install g++")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the sources ask of a compiler and of a processor, and what an including project may do to them."""
+"""What the sources require of compiler and processor, and what an including project may set."""
 
 import re
 import subprocess
@@ -51,7 +51,7 @@ def test_cpuid_of_emulated_processors(asker, processor):
 
 
 def refused(tmp_path, *flags: str) -> str:
-    """The compiler's complaint about model.c with these flags."""
+    """What the compiler says of model.c with these flags."""
     done = subprocess.run(
         [tool("gcc"), "-std=c99", "-O2", *flags, *INCLUDE, "-c", SOURCE / "model.c", "-o", tmp_path / "x.o"],
         capture_output=True,

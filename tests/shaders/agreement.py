@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the shaders are held against: the C library on the same model and records, and the tolerances."""
+"""What the shaders are compared with: the C library on the same model and records, and the tolerances."""
 
 import ctypes
 import functools

@@ -206,7 +206,7 @@ def shown(items: list, what: str) -> Iterable:
 
 
 def _why(lobe: Lobe) -> str:
-    """Where a density jumps or is narrow, if it is: the likely reason why no table meets a tolerance."""
+    """Where a density jumps or is narrow, the likely reason why no table meets a tolerance; else nothing."""
     angles = np.linspace(*lobe.theta_r_range, 19)
     for theta_r in angles:
         x = find_jump(lobe, theta_r)
@@ -228,11 +228,13 @@ def _why(lobe: Lobe) -> str:
 
 
 def bake_one(model: Model, args: argparse.Namespace) -> list[size.Choice]:
-    """Tables of the size and warp asked for, or chosen by measurement where none was."""
+    """Tables of the requested size and warp; what was not requested is chosen by measurement."""
     if args.warp:
         tables = [bake_table(lobe, *args.size, args.warp) for lobe in model.lobes]
         pairs = zip(tables, model.lobes, strict=True)
-        return [size.Choice(table, measure(table, lobe), "size and warp as asked") for table, lobe in pairs]
+        return [
+            size.Choice(table, measure(table, lobe), "size and warp as requested") for table, lobe in pairs
+        ]
     if args.size:
         return [size.table_of_size(lobe, *args.size) for lobe in model.lobes]
     return size.smallest_tables(model.lobes, args.tolerance, args.max_size)

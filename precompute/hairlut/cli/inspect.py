@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""hairlut inspect: what a file says about itself."""
+"""hairlut inspect: prints a file's header."""
 
 import argparse
 import json

@@ -45,7 +45,7 @@ def _through(before: Array, after: Array, s: Array, inner: Array) -> Array:
 
     x - x0 = w (s + d0) / (2 s + d0 + d1) at f = 1/2, solved for d0; before + after = w.
     """
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):  # of cells without a width, which are refused
         slope = ((before - after) * s + before * inner) / after
     low, high = END_RANGE
     return np.clip(slope, low * s, high * s)

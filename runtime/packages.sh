@@ -7,7 +7,7 @@ case "${1:-base}" in
 base) packages="gcc g++ libc6-dev make pkg-config libopenexr-dev" ;;
 extras) packages="clang libclang-rt-dev valgrind lcov libbenchmark-dev libboost-dev libsleef-dev glslang-tools libgl1 libegl1
     libegl-mesa0 libgl1-mesa-dri libvulkan1 mesa-vulkan-drivers chromium chromium-driver gcc-aarch64-linux-gnu
-    libc6-dev-arm64-cross qemu-user wine wine64" ;;
+    libc6-dev-arm64-cross qemu-user wine wine64 libllvm19" ;;
 *) echo "usage: $0 [base|extras]" >&2; exit 2 ;;
 esac
 command -v dpkg-query >/dev/null 2>&1 || { echo "hairlut: not a Debian system; the build wants:" $packages; exit 0; }

@@ -21,6 +21,7 @@
 #include <memory>
 #include <string>
 
+#include <mitsuba/core/fresolver.h>
 #include <mitsuba/core/properties.h>
 #include <mitsuba/core/string.h>
 #include <mitsuba/core/warp.h>
@@ -60,7 +61,7 @@ std::shared_ptr<const hairlut_model> load_model(const std::string &name) {
 #ifdef HAIRLUT_WITHOUT_EXR
     const hairlut_result result = HAIRLUT_ERROR_UNSUPPORTED;
 #else
-    const hairlut_result result = hairlut_load_with(name.c_str(), nullptr, &loaded, message);
+    const hairlut_result result = hairlut_load_with(file_resolver()->resolve(name).string().c_str(), nullptr, &loaded, message);
 #endif
     if (result != HAIRLUT_OK)
         Throw("hairlut: model \"%s\" is neither compiled in, as \"printed\" and \"fitted\" are, nor a directory of textures: %s "

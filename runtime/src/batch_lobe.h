@@ -113,12 +113,14 @@ static inline void pdf_lobe_block(const hairlut_model *model, int lobe, size_t n
 {
     const hairlut_lobe *l = &model->lobes[lobe];
     float azimuth[BLOCK], valid[BLOCK], pdf[BLOCK];
-    for (size_t s = 0; s < n; s += LANES) {
-        const real phi_r = load(in[1] + s), phi_i = load(in[3] + s);
-        const mask is_known = both(known(load(in[0] + s), phi_r, load(in[2] + s), phi_i), is_finite(phi_i));
-        store(valid + s, choose(is_known, all(1.0f), all(0.0f)));
-        store(azimuth + s, relative_azimuth(l->azimuth, wrap(phi_r, -hairlut_pi), wrap(phi_i, -hairlut_pi)));
-    }
+    size_t first = 0;
+    do { /* n is not 0: gcc is told that all of azimuth is set */
+        const real phi_r = load(in[1] + first), phi_i = load(in[3] + first);
+        const mask is_known = both(known(load(in[0] + first), phi_r, load(in[2] + first), phi_i), is_finite(phi_i));
+        store(valid + first, choose(is_known, all(1.0f), all(0.0f)));
+        store(azimuth + first, relative_azimuth(l->azimuth, wrap(phi_r, -hairlut_pi), wrap(phi_i, -hairlut_pi)));
+        first += LANES;
+    } while (first < n);
     lobe_density(l, n, in[0], in[2], azimuth, pdf);
     for (size_t s = 0; s < n; s += LANES)
         store(out + s, choose(greater(load(valid + s), all(0.0f)), load(pdf + s), all(0.0f)));

@@ -157,7 +157,7 @@ WRONG = {
     "fit inputs/phi_in_degrees.csv": "phi is 45 on line 3",
     "fit inputs/utf16.csv": "UTF-16, expected UTF-8",
     "fit inputs/grid_whole.csv --measure both": "invalid choice",
-    "fit inputs/grid_whole.csv --rows 1": "--rows 1: expected 2 or more",
+    "fit inputs/grid_whole.csv --lobes 0": "--lobes 0: expected a number from 1 to 8",
     "fit quits_bsdf.py": "quits_bsdf.py:4: calls sys.exit()",
     "fit asks_bsdf.py": "asks_bsdf.py:4: reads standard input",
     "fit nan_bsdf.py": "nan_bsdf.py",

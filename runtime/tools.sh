@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# What must be there before anything is set up or built: tools.sh PYTHON [READY]. PYTHON is looked at unless the file READY says that
-# the environment stands. What is missing is named with the remedy, exit code 2, before a file is written.
+# Checks for the tools that setup and build need: tools.sh PYTHON [READY]. PYTHON is not checked if the file READY is newer than
+# pyproject.toml: the environment exists. What is missing is named with the remedy, exit code 2, before a file is written.
 set -u
 cd "$(dirname "$0")/.."
 python=${1:-python3}
@@ -12,20 +12,20 @@ fail() {
     exit 2
 }
 
-# Which Python makes the environment.
+# The Python that makes the environment.
 check_python() {
     command -v "$python" >/dev/null 2>&1 ||
         fail "there is no program '$python': apt-get install python3 python3-venv, or name a Python of 3.11 or newer with make PYTHON=..."
     version=$("$python" -c 'import sys; print("Python %d.%d" % sys.version_info[:2])' 2>/dev/null)
     case "$version" in
     "Python 3."*) ;;
-    *) fail "'$python' is no Python 3 (asked for its version it said '${version:-nothing}'): name another with make PYTHON=..." ;;
+    *) fail "'$python' is no Python 3 (its version is '${version:-nothing}'): name another with make PYTHON=..." ;;
     esac
     [ "${version#Python 3.}" -ge 11 ] || fail "'$python' is $version, expected 3.11 or newer: name another with make PYTHON=..."
     "$python" -c 'import ensurepip, venv' 2>/dev/null || fail "$version lacks the venv module: apt-get install python3-venv"
 }
 
-# What CMake will take: $CC, which may have arguments, else the first of the usual names.
+# The compiler that CMake will choose: $CC, which may have arguments, else the first of the usual names.
 find_compiler() {
     if [ -n "${CC:-}" ]; then
         command -v "${CC%% *}" >/dev/null 2>&1 || fail "CC is '$CC', and there is no such program"
@@ -48,7 +48,7 @@ check_compiler() {
         fail "$CC does not link an empty program: $(tail -n 1 "$folder/log"). apt-get install gcc libc6-dev"
 }
 
-# A build folder that was configured without a compiler, or with one that has gone, would fail for ever.
+# A build folder that was configured without a compiler, or with one that was removed, would fail every time.
 forget_lost_compilers() {
     for cache in build/*/CMakeCache.txt build/*/*/CMakeCache.txt; do
         [ -f "$cache" ] || continue

@@ -13,7 +13,7 @@ F bends at every power of two. That costs nothing, because a cell is a curve in 
 Why this one (tests/report/pages/study.md has every alternative on the same measure). A renderer pays for a
 table's relative variance V. With curved cells every warp with dense ends is good enough, and this one is
 the cheapest. The outermost knots are the domain's ends, not a far quantile: a renderer's BSDF is not the
-lobe, and a direction that the table never draws is energy that no weight restores. With curved end cells
+lobe, and a direction that the table never samples is energy that no weight restores. With curved end cells
 that support is nearly free. e is a power of two that size.py measures for each table.
 """
 

@@ -40,7 +40,7 @@ AFTER = """
 
 ![Time per sample against relative variance](speed_error.svg)
 
-![A lobe, its texture, and draws from it](lobe_and_texture.png)
+![A lobe, its texture, and samples drawn through it](lobe_and_texture.png)
 """
 
 
@@ -51,7 +51,7 @@ def index() -> str:
 
 @contextmanager
 def progress(title: str) -> Iterator[Callable[[str], None]]:
-    """step(text) shows what is being worked on, on a terminal."""
+    """step(text) shows the current step on a terminal."""
     from rich.console import Console
 
     console = Console(stderr=True)

@@ -30,7 +30,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a case: a choice, or the message of its refusal."""
+    """The outcome of a case: a choice, or the message of its refusal."""
 
     case: Case
     choice: Choice | None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the report finds things, and where its pages go."""
+"""Paths of what the report reads, and of its pages."""
 
 from pathlib import Path
 

@@ -278,7 +278,7 @@ def spline_warp(log_slopes: Array, e: float) -> Warp:
 
 
 def own_warp(lobe: Lobe, width: int, cell: Cell, e: float = 2.0**-17, rounds: int = 2) -> Warp:
-    """The best smooth monotone warp found for this lobe alone, starting from the fourth root's slope."""
+    """The best smooth monotone warp for this lobe alone, starting from the fourth root's slope."""
 
     def cost(log_slopes: Array) -> float:
         table = tabulate_any(lobe, width, BOUND_HEIGHT, spline_warp(log_slopes, e))

@@ -4,6 +4,7 @@
 
 #include "exr_compression.h"
 #include "exr_digest.h"
+#include "exr_utf8.h"
 
 hairlut_result hairlut_exr_fail(const hairlut_exr_file *file, hairlut_result result, const char *format, ...)
 {
@@ -111,6 +112,36 @@ static hairlut_result check_windows(hairlut_exr_file *file)
     return HAIRLUT_OK;
 }
 
+static hairlut_exr_text text_of(const char *begin, int32_t length)
+{
+    const hairlut_exr_text text = {begin, begin + length};
+    return text;
+}
+
+static int is_text(const exr_attribute_t *attribute)
+{
+    return hairlut_exr_is_utf8(text_of(attribute->name, attribute->name_length))
+           && (attribute->type != EXR_ATTR_STRING || attribute->string->length == 0
+               || hairlut_exr_is_utf8(text_of(attribute->string->str, attribute->string->length)));
+}
+
+/* Also of attributes that this library does not read. */
+static hairlut_result check_text(const hairlut_exr_file *file)
+{
+    int32_t count = 0;
+    exr_result_t code = exr_get_attribute_count(file->context, 0, &count);
+    for (int32_t k = 0; k < count; ++k) {
+        const exr_attribute_t *attribute = NULL;
+        code = exr_get_attribute_by_index(file->context, 0, EXR_ATTR_LIST_FILE_ORDER, k, &attribute);
+        if (code != EXR_ERR_SUCCESS)
+            break;
+        if (!is_text(attribute))
+            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                    "attribute number %d: expected text in UTF-8, in an OpenEXR image; bake the model again", (int)k);
+    }
+    return code == EXR_ERR_SUCCESS ? HAIRLUT_OK : fail_exr(file, code, "header");
+}
+
 hairlut_result hairlut_exr_check_size(const hairlut_exr_file *file, int least_width, int least_height)
 {
     const int most = HAIRLUT_EXR_LARGEST_SIDE;
@@ -140,6 +171,8 @@ hairlut_result hairlut_exr_open(hairlut_exr_file *file, const char *path, const 
     if (code != EXR_ERR_SUCCESS || named < 0)
         return fail_exr(file, code == EXR_ERR_SUCCESS ? EXR_ERR_READ_IO : code, "header");
     result = check_parts(file);
+    if (result == HAIRLUT_OK)
+        result = check_text(file);
     return result == HAIRLUT_OK ? check_windows(file) : result;
 }
 

@@ -25,7 +25,7 @@ typedef struct hairlut_exr_file {
 void hairlut_exr_name(hairlut_exr_file *file, const char *path, char *message);
 
 /* Opens the file and checks its layout, before anything is decoded: one part, scanlines, a compression without loss that every
- * OpenEXR library has, windows that start at (0, 0) and agree. `source` is NULL for a file on disk, or has a read_fn that reads it from elsewhere.
+ * OpenEXR library has, text in UTF-8, windows that start at (0, 0) and agree. `source` is NULL for a file on disk, or has a read_fn that reads it from elsewhere.
  * Close it whatever the result. */
 hairlut_result hairlut_exr_open(hairlut_exr_file *file, const char *path, const exr_context_initializer_t *source,
                                 char *message);

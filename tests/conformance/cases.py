@@ -40,6 +40,9 @@ NO_NUMBERS = (
     "0" * 101,
 )
 NUMBERS = ("1.5", "+1.5", "1.5e0", "15E-1", "1.5000000000000000000000", "0015e-1", "1.50e+00")
+# a stray byte, a cut character, an overlong one, a surrogate, one beyond the last
+NO_TEXT = (b"a\x80b", b"\xc2", b"\xc2a", b"\xe2\x82a", b"\xe0\x80\x80", b"\xed\xa0\x80", b"\xf4\x90\x80\x80")
+NO_TEXT += (b"\xf1\x80\x80a", b"\xe2\x82\xc0", b"\xe2\x82", b"\xc0\x80", b"\xff\xff", b"\xf0\x80\x80\x80")
 NO_WARPS = ("cubic", "octaves", "octaves e=", "octaves e=1e-5 ", "octaves e=nan", "octaves e=1e-13")
 NO_WARPS += ("octaves e=2", "octaves e=-1", "octaves  e=0.1", "octaves f=0.1", "uniform e=0")
 NO_LOBES = ("direct direct", "direct  multiple", "direct Multiple", "direct 2nd", "direct,multiple")
@@ -124,6 +127,17 @@ def inserted(at: int, data: bytes) -> Edit:
     return Edit(whole=whole)
 
 
+def named_bytes(attribute: str, value: bytes) -> Edit:
+    """A text attribute of any bytes."""
+
+    def whole(path: Path) -> None:
+        mark = b"?" * len(value)
+        Edit(header={attribute: mark.decode()}).apply(path)
+        path.write_bytes(path.read_bytes().replace(mark, value, 1))
+
+    return Edit(whole=whole)
+
+
 def gone(path: Path) -> None:
     path.unlink()
 
@@ -169,6 +183,13 @@ def layouts(file: str, channel: str) -> Iterator[Case]:
     yield "flag of deep data", file, patched(magic, 5, 8), ".exr"
     yield "flag of tiles", file, patched(magic, 5, 2), ".exr"
     yield "another magic number", file, patched(magic, 0, 0), "OpenEXR image"
+    for text in ("caf\u00e9", "\u20ac \u4e2d\uffff\ud7ff", "\U0001f600\U0010ffff\U00040000"):
+        yield f"text {text!r}", file, Edit(header={"hairlut.parameters": text}), None
+    for text in NO_TEXT:
+        edit = named_bytes("hairlut.parameters", text)
+        yield f"text that is not UTF-8: {text!r}", file, edit, "OpenEXR image"
+    name = inserted(8, b"x\xff\0int\0\4\0\0\0\0\0\0\0")
+    yield "a name that is not UTF-8", file, name, "OpenEXR image"
     yield "no compression", file, patched(b"compression\0", 10, ord("X")), ".exr"
     for text in (b"x" * 300 + b"\0int\0", b"x\0" + b"t" * 300 + b"\0", b"x\0int"):
         attribute = inserted(8, text + b"\4\0\0\0\0\0\0\0")

@@ -3,7 +3,7 @@
 
 import zlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,8 @@ import OpenEXR
 from hairlut import exr
 from hairlut.mixture import Mixture
 from hairlut.model import BakedLobe, BakedModel
+from hairlut.slopes import derived
+from hairlut.table import Table
 
 Channels = dict[str, np.ndarray]
 FORMAT_1_CELL = "parabola limit=0.9"
@@ -106,3 +108,21 @@ def to_format_1(path: Path) -> None:
         channels=lambda channels: {"Y": channels["Y"]},
     )
     edit.apply(path)
+
+
+def small_table(table: Table) -> Table:
+    """A table of the same kind in a few columns and rows."""
+    width, height = 6, 3
+    row = np.linspace(*table.domain, width, dtype=np.float32)
+    row[[0, -1]] = table.domain
+    texels = np.tile(row, (height, 1))
+    slopes = derived(texels, table.warp.widths(width)).astype(np.float32)
+    return replace(table, texels=texels, slopes=slopes, log_mass=np.zeros(height))
+
+
+def write_small(directory: Path, source: Path) -> Path:
+    """Files of format 2 that are mostly header."""
+    given = model(source)
+    lobes = (BakedLobe(x.name, small_table(x.theta), x.phi and small_table(x.phi)) for x in given.lobes)
+    exr.write_model(directory, replace(given, lobes=tuple(lobes)))
+    return directory

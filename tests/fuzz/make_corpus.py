@@ -3,42 +3,21 @@
 found later is kept beside them."""
 
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from conformance import cases, files
 
-from hairlut import exr
-from hairlut.slopes import derived
-
 ROOT = Path(__file__).resolve().parents[2]
 CORPUS = Path(__file__).resolve().parent / "corpus"
-SMALL = 6, 3  # columns, rows
-
-
-def small_table(table):
-    """A table of the same kind in a few columns and rows."""
-    width, height = SMALL
-    row = np.linspace(*table.domain, width, dtype=np.float32)
-    row[[0, -1]] = table.domain
-    texels = np.tile(row, (height, 1))
-    slopes = derived(texels, table.warp.widths(width)).astype(np.float32)
-    return replace(table, texels=texels, slopes=slopes, log_mass=np.zeros(height))
 
 
 def write_loader() -> None:
     """Tables of both formats and a mixture, in every compression that OpenEXR has."""
     folder = CORPUS / "loader"
     folder.mkdir(parents=True, exist_ok=True)
-    given = files.model(ROOT / "luts" / "fitted")
-    lobes = [
-        replace(lobe, theta=small_table(lobe.theta), phi=lobe.phi and small_table(lobe.phi))
-        for lobe in given.lobes
-    ]
     with tempfile.TemporaryDirectory() as temporary:
-        directory = Path(temporary) / "2"
-        exr.write_model(directory, replace(given, lobes=tuple(lobes)))
+        directory = files.write_small(Path(temporary) / "2", ROOT / "luts" / "fitted")
         for name in (*cases.KEPT, "PIZ", "B44", "ZSTD"):
             for file in (cases.THETA, cases.PHI, cases.MIXTURE):
                 copy = folder / f"{Path(file).stem}_{name.lower()}.exr"

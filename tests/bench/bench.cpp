@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <gnu/libc-version.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -49,13 +50,13 @@ void add(const std::string &name, const Call &call)
     benchmark::RegisterBenchmark(name.c_str(), [call](benchmark::State &state) { time_call(state, call, inputs.view()); });
 }
 
-// All threads draw from one model; the time is that of a sample of any of them.
+// All threads draw from one model; the time is the processor's for a sample of any of them.
 void add_threads(const std::string &name, const Call &call, int threads)
 {
     benchmark::RegisterBenchmark((name + std::to_string(threads)).c_str(), [call](benchmark::State &state) {
         const bench::Inputs own(static_cast<unsigned>(2 + state.thread_index()));
         time_call(state, call, own.view());
-    })->Threads(threads)->UseRealTime();
+    })->Threads(threads);
 }
 
 void add_all(const std::string &model, const bench::Calls &calls, const std::string &how)
@@ -108,16 +109,26 @@ void add_warps(const std::string &how, const bench_warp *warps)
         });
 }
 
-// Memory from malloc, counted in *user
+// Memory from malloc, of which *user has how much is in use; its size is kept before it
+constexpr size_t before = alignof(std::max_align_t);
+
 void *counted(void *user, size_t size)
 {
+    char *memory = static_cast<char *>(std::malloc(before + size));
+    if (!memory)
+        return nullptr;
+    std::memcpy(memory, &size, sizeof size);
     *static_cast<size_t *>(user) += size;
-    return std::malloc(size);
+    return memory + before;
 }
 
-void released(void *, void *memory)
+void released(void *user, void *memory)
 {
-    std::free(memory);
+    char *start = static_cast<char *>(memory) - before;
+    size_t size;
+    std::memcpy(&size, start, sizeof size);
+    *static_cast<size_t *>(user) -= size;
+    std::free(start);
 }
 
 // The models compiled into the library, and every directory below `directory` that holds one

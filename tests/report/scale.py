@@ -12,13 +12,14 @@ from hairlut import exr
 from hairlut.lobes import FITTED
 from hairlut.mixture import Mixture, constant
 from hairlut.model import BakedLobe, BakedModel
-from hairlut.size import table_of_size
 from hairlut.table import Table, bake_table
+from hairlut.warp import Warp
 from report.markdown import table as markdown_table
 
 LOBES, OFFSETS, SIDES = (1, 2, 4, 8, 16), (1, 2, 5, 17, 65), (16, 32, 64, 128, 256, 512)
 SIDE = 32  # of what does not vary
 ROWS = 33  # nodes of theta_r in a mixture
+WARP = Warp("octaves", 2.0**-16)  # leaves no cell flat at any of these sizes
 NAMES = (
     "^(lobes|offsets|columns|rows)-[0-9]+/(vertex|sample_hair|pdf_hair)/hairlut/(one|arrays)$|"
     "^(fitted|brown)/(vertex|sample_hair|pdf_hair)/hairlut/threads"
@@ -27,39 +28,36 @@ NAMES = (
 
 def write_models(folder: Path, lobes=LOBES, offsets=OFFSETS, sides=SIDES) -> None:
     """One model directory for each point of each axis: lobes-4, offsets-17, columns-64, rows-64."""
-    theta, phi = (table_of_size(lobe, SIDE, SIDE).table for lobe in (FITTED.direct_theta, FITTED.direct_phi))
-    for count in lobes:
-        names = tuple(f"lobe{k}" for k in range(count))
-        write(folder / f"lobes-{count}", theta, phi, constant(names))
-    for count in offsets:
-        write(folder / f"offsets-{count}", theta, phi, over_offsets(count))
-    for side in sides:
-        for axis, (width, height) in {"columns": (side, SIDE), "rows": (SIDE, side)}.items():
-            tables = (resized(lobe, like, width, height) for lobe, like in
-                      ((FITTED.direct_theta, theta), (FITTED.direct_phi, phi)))  # fmt: skip
-            write(folder / f"{axis}-{side}", *tables, constant(("lobe0",)))
+    models = {f"lobes-{count}": (SIDE, SIDE, constant(names(count))) for count in lobes}
+    models |= {f"offsets-{count}": (SIDE, SIDE, over_offsets(count)) for count in offsets}
+    models |= {f"columns-{side}": (side, SIDE, constant(names(1))) for side in sides}
+    models |= {f"rows-{side}": (SIDE, side, constant(names(1))) for side in sides}
+    for name, (width, height, mixture) in models.items():
+        theta, phi = (
+            replace(bake_table(lobe, width, height, WARP), model=name)
+            for lobe in (FITTED.direct_theta, FITTED.direct_phi)
+        )
+        exr.write_model(folder / name, BakedModel(name, lobes_of(mixture.lobes, theta, phi), mixture))
 
 
-def write(folder: Path, theta: Table, phi: Table, mixture: Mixture) -> None:
-    """A model whose lobes have tables of their own, all with these texels."""
-    lobes = tuple(
+def names(count: int) -> tuple[str, ...]:
+    return tuple(f"lobe{k}" for k in range(count))
+
+
+def lobes_of(names: tuple[str, ...], theta: Table, phi: Table) -> tuple[BakedLobe, ...]:
+    """Lobes that have tables of their own, all with these texels."""
+    return tuple(
         BakedLobe(name, replace(theta, name=f"{name}_theta"), replace(phi, name=f"{name}_phi"))
-        for name in mixture.lobes
+        for name in names
     )
-    exr.write_model(folder, BakedModel(folder.name, lobes, mixture))
 
 
 def over_offsets(count: int) -> Mixture:
     """Four lobes whose shares and turns vary over theta_r and so many offsets."""
-    names, random = tuple(f"lobe{k}" for k in range(4)), np.random.default_rng(5)
-    shape = len(names), ROWS, count
+    random, shape = np.random.default_rng(5), (4, ROWS, count)
     offset = np.linspace(-1, 1, count) if count > 1 else np.zeros(1)
     theta_r = np.linspace(-np.pi / 2, np.pi / 2, ROWS)
-    return Mixture(names, theta_r, offset, random.uniform(0.1, 1, shape), random.uniform(-3, 3, shape))
-
-
-def resized(lobe, like: Table, width: int, height: int) -> Table:
-    return bake_table(lobe, width, height, like.warp)
+    return Mixture(names(4), theta_r, offset, random.uniform(0.1, 1, shape), random.uniform(-3, 3, shape))
 
 
 # ---- the page
@@ -79,15 +77,17 @@ CALCULATION = """
   asks all K. A vertex is one draw and 2 K - 1 densities, and 2 evaluations of the mixture (K shares and
   turns, bilinear). Hence a line in K:
 {lines}
-- A number of offsets or of rows of the mixture adds memory only: 8 bytes a lobe and node. The two nodes
-  are found by {search}.
+- More offsets, or more rows of the mixture, add memory, 16 bytes a lobe and node, and steps to the search
+  of a node, which grow with their logarithm one at a time.
 - A draw computes its column from u, and its row from theta_r: neither more rows nor more columns add
   work. A density searches a row for the cell of an angle, whose steps grow with the logarithm of the
   columns. What grows is the memory that both go through, and with it the time of a miss.
-- Memory, measured: {memory} bytes a texel of its tables. {model} of a model of 16 lobes of
-  {side}x{side}.
+- Memory, measured: {memory:.0f} bytes a texel of the tables, which is {ratio:.1f} times that of the texture;
+  {model:.0f} KiB for 16 lobes of {side}x{side}.
 - Threads share a model that is only read, and nothing else: no lock, no counter, no allocation. Each
-  adds its own speed until cores, or the caches that they share, run out.
+  adds its own speed until cores, or the caches that they share, run out. Above, a vertex takes a thread
+  as much of its processor's time among others as alone. The clock on the wall says less: the machine was
+  shared with other programs.
 """
 
 
@@ -130,22 +130,19 @@ def calculation(times: Times) -> str:
     texels = 2 * SIDE * SIDE * 16
     whole = times.memory.get("lobes-16", 0)
     return CALCULATION.format(
-        lines="\n".join(lines), side=SIDE, memory=f"{whole / texels:.0f}", model=f"{whole / 1024:.0f} KiB",
-        search="the number of the interval, computed where nodes are even",
-    )  # fmt: skip
+        lines="\n".join(lines), side=SIDE, memory=whole / texels, ratio=whole / texels / 8, model=whole / 1024
+    )
 
 
 def threads(times: Times) -> str:
-    """How much faster so many threads are than one, drawing from one model."""
-    parts = []
+    """What a vertex takes a thread, when so many draw from one model at once."""
+    rows = []
     for model in ("fitted", "brown"):
         one = times.least(model, "vertex", "hairlut", "threads1")
-        rows = []
         for count in (2**k for k in range(9)):
             ns = times.least(model, "vertex", "hairlut", f"threads{count}")
             if one and ns:
-                rows.append((count, f"{ns:.1f}", f"{one / ns:.2f}"))
-        if rows:
-            parts.append(f"`{model}`, a vertex over arrays, by the clock on the wall:\n\n")
-            parts.append(markdown_table(("threads", "ns a vertex", "times as fast as one"), rows) + "\n")
-    return "".join(parts)
+                rows.append((model, count, f"{ns:.1f}", f"{count * one / ns:.2f}"))
+    return markdown_table(
+        ("model", "threads", "ns of a processor's time", "so many times as fast as one"), rows
+    )

@@ -72,10 +72,10 @@ def test_scale_page_fits_a_line(tmp_path):
         each.name for each in tmp_path.iterdir()
     }
     repeats = {f"lobes-{k}/vertex/hairlut/one": [10.0 + 5 * k] for k in scale.LOBES}
-    repeats |= {"fitted/vertex/hairlut/threads1": [8.0], "fitted/vertex/hairlut/threads2": [4.1]}
+    repeats |= {"fitted/vertex/hairlut/threads1": [8.0], "fitted/vertex/hairlut/threads2": [8.2]}
     text = scale.page(Times(repeats, "a processor", {f"lobes-{k}": 1000 * k for k in scale.LOBES}))
     assert "10.0 + 5.0 K" in text
-    assert "| 2 | 4.1 | 1.95 |" in text
+    assert "| fitted | 2 | 8.2 | 1.95 |" in text
 
 
 def test_plot_command_draws_a_file(tmp_path):

@@ -253,7 +253,8 @@ def _from_python(path: Path) -> Given:
     _check_settings(path, vars(module))
     given = getattr(module, "LOBES", None)
     if given is None or not all(isinstance(lobe, Lobe) for lobe in given):
-        raise HairlutError(f"{path}: expected LOBES, {SETTINGS['LOBES'][1]}")
+        remedy = f"; it defines bsdf: hairlut fit {path}" if hasattr(module, "bsdf") else ""
+        raise HairlutError(f"{path}: expected LOBES, {SETTINGS['LOBES'][1]}{remedy}")
     return Given(given, getattr(module, "AZIMUTH", DIFFERENCE), getattr(module, "SHARES", None))
 
 

@@ -114,6 +114,10 @@ MISTAKES = {
     ),
     "azimuth": (GOOD + 'AZIMUTH = "left"\n', ["azimuth 'left'", "difference, sum"]),
     "no lobes": ("x = 1\n", ["expected LOBES"]),
+    "a BSDF": (
+        "def bsdf(theta_r, theta_i, phi):\n    return 1.0\n",
+        ["expected LOBES", "it defines bsdf: hairlut fit"],
+    ),
     "syntax": ("LOBES = (\n", ["hair.py:1", "SyntaxError"]),
     "raises": (
         "import numpy as np\nnp.zeros(2) @ np.zeros(3)\n",

@@ -27,7 +27,7 @@ EXAMPLES = """examples:
   hairlut bake --model fitted --tolerance 1e-3 --out small
   hairlut bake --size 64x64 --out square
   hairlut bake --size 64x64 --warp uniform --out baseline
-  hairlut bake --model my_hair.py                   your own lobes (see the module hairlut.modelfile)
+  hairlut bake --model my_hair.py                   your own lobes (python -m pydoc hairlut.modelfile)
   hairlut bake --model hairs/ --jobs 8 --out baked  every model file in hairs/
   hairlut bake --model theirs.py --timeout 60       stop it after a minute
   parallel hairlut bake --out baked --model ::: hairs/*.py      the same, as the jobs of a queue"""

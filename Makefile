@@ -26,7 +26,7 @@ help:
 	@echo "make bench    time the C library and its rivals, as ratios"
 	@echo "make report   regenerate tests/report/pages/: speed against error, hard cases, the study, shaders, explorer"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
-	@echo "make render   render the hair scene with the Mitsuba plugin (about 10 minutes)"
+	@echo "make render   render hair with Mitsuba: the scene, a lock of own hair, what it costs (about 10 minutes)"
 	@echo "make fuzz     coverage-guided fuzzing, SECONDS_EACH=15 a fuzzer: files, tables in memory, table to file to table"
 	@echo "make clean    remove $(VENV) and $(BUILD)/"
 
@@ -92,6 +92,8 @@ plugin: setup
 
 render: setup
 	$(REPORT).render
+	$(REPORT).own_hair
+	$(REPORT).variants
 
 fuzz: setup
 	tests/fuzz/fuzz.sh $(SECONDS_EACH)

@@ -26,3 +26,17 @@ def mi():
         return load_engine()
     except PluginUnavailable as error:
         pytest.skip(f"the Mitsuba plugin is not tested: {error}")
+
+
+@pytest.fixture(scope="module")
+def llvm(mi):
+    """The engine in variant llvm_ad_rgb, which is scalar_rgb again after the tests of this file."""
+    from report.engine import lack_of_llvm
+
+    if lack := lack_of_llvm():
+        pytest.skip(lack)
+    mi.set_variant("llvm_ad_rgb")
+    import hairlut.mitsuba  # noqa: F401
+
+    yield mi
+    mi.set_variant("scalar_rgb")

@@ -2,8 +2,6 @@
 """The BSDF of `import hairlut.mitsuba` in llvm_ad_rgb and scalar_rgb draws what the C library draws."""
 
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -23,29 +21,6 @@ COUNT = 700_000
 ROWS, COLUMNS = 10, 20
 SIGNIFICANCE = 0.01 / len(CASES)
 PLACES = 20_000
-
-
-PROBE = """
-import mitsuba as mi
-mi.set_variant("llvm_ad_rgb")
-si = mi.SurfaceInteraction3f()
-si.wi = mi.Vector3f([0.1, 0.2], 0.3, 0.9)
-print(mi.load_dict({"type": "hair"}).sample(mi.BSDFContext(), si, 0.5, mi.Point2f(0.3, 0.6)))
-"""
-
-
-@pytest.fixture(scope="module")
-def llvm(mi):
-    """The engine in variant llvm_ad_rgb, which is scalar_rgb again after the tests of this file."""
-    tried = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, text=True, check=False)
-    if tried.returncode != 0:  # an LLVM that lacks instructions ends the process
-        said = (tried.stderr.strip().splitlines() or ["no LLVM"])[0][:100]
-        pytest.skip(f"the engine's own hair does not run in llvm_ad_rgb ({said}): set DRJIT_LIBLLVM_PATH")
-    mi.set_variant("llvm_ad_rgb")
-    import hairlut.mitsuba  # noqa: F401
-
-    yield mi
-    mi.set_variant("scalar_rgb")
 
 
 @pytest.fixture

@@ -53,7 +53,7 @@ def order(row):
     return np.argsort(width), width
 
 
-def test_both_highlights_are_told_apart(row):
+def test_both_highlights_are_separated(row):
     at, width = order(row)
     np.testing.assert_allclose(width[at], WIDTHS, rtol=0.1)
     np.testing.assert_allclose(row.share[:, at[0]], share(GAMMA), atol=0.02)

@@ -408,7 +408,7 @@ def doubled(data):
     ],
     ids=["cut", "damaged", "empty", "text", "one array", "doubled", "npy", "npz named csv"],
 )
-def test_a_file_that_holds_no_arrays_is_named(name, change, said, whole, tmp_path):
+def test_a_file_without_arrays_is_named(name, change, said, whole, tmp_path):
     path = written(tmp_path, change(whole), name)
     with pytest.raises(HairlutError, match=said) as caught:
         read(path)

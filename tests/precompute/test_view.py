@@ -290,7 +290,7 @@ def data_of(text: str) -> dict:
     return json.loads(re.search(r'id="data">(.*?)</script>', text)[1])
 
 
-def test_page_holds_the_shipped_shader_and_tables(file):
+def test_page_contains_the_shipped_shader_and_tables(file):
     text = file.read_text()
     assert (SHADERS / "hairlut.glsl").read_text() in text
     data = data_of(text)

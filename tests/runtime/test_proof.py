@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The C library under fire: a walk through the whole API (exercise.c) under sanitizers and valgrind, every
+"""The C library under stress: a walk through the whole API (exercise.c) under sanitizers and valgrind, every
 allocation and every read failed in turn (faults.c), the fuzz targets, and the branches that they reach."""
 
 import json
@@ -104,20 +104,20 @@ def exercised(command: list, directories: list[Path]) -> str:
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-def test_address_and_undefined_behaviour_sanitizers_find_nothing(directories, compiler):
+def test_address_and_undefined_behaviour_sanitizers_report_nothing(directories, compiler):
     need(compiler)
     linked = library(f"asan-{compiler}", f"-DHAIRLUT_SANITIZE={SANITIZERS}", compiler=compiler)
     exercise = program(linked, HERE / "exercise.c", flags=SANITIZED, compiler=compiler)
     exercised([exercise], directories if has_exr() else [])
 
 
-def test_thread_sanitizer_finds_nothing_with_one_model_in_many_threads(good):
+def test_thread_sanitizer_reports_nothing_with_one_model_in_many_threads(good):
     linked = library("tsan", "-DHAIRLUT_SANITIZE=thread")
     exercise = program(linked, HERE / "exercise.c", flags=("-fsanitize=thread",))
     exercised([exercise, "8"], good if has_exr() else [])
 
 
-def test_the_sanitizers_are_awake(tmp_path):
+def test_the_sanitizers_report_a_mistake(tmp_path):
     """A program with one fault each must fail."""
     faults = {
         "address": "#include <stdlib.h>\nint main(int n, char **v) { return *((char *)malloc(8) + 7 + n); }",
@@ -130,7 +130,7 @@ def test_the_sanitizers_are_awake(tmp_path):
         assert subprocess.run([tmp_path / kind], capture_output=True).returncode != 0
 
 
-def test_valgrind_finds_neither_errors_nor_leaks(good, directories):
+def test_valgrind_reports_neither_errors_nor_leaks(good, directories):
     need("valgrind")
     exercise = program(library("valgrind"), HERE / "exercise.c")
     checks = [
@@ -166,7 +166,7 @@ def replayed(linked: list, target: str, folder: Path, flags: tuple[str, ...] = (
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_fuzz_corpus_holds_under_the_sanitizers(tmp_path, target):
+def test_fuzz_corpus_passes_under_the_sanitizers(tmp_path, target):
     if target != "memory" and not has_exr():
         pytest.skip("hairlut_exr is not built")
     replayed(library("asan-gcc", f"-DHAIRLUT_SANITIZE={SANITIZERS}"), target, tmp_path, SANITIZED)

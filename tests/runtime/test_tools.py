@@ -96,7 +96,7 @@ def test_python_without_venv(machine):
     assert "apt-get install python3-venv" in machine.refuses("python3")
 
 
-def test_python_is_not_asked_once_the_environment_stands(complete):
+def test_python_is_not_checked_once_the_environment_exists(complete):
     os.utime(complete.folder / "precompute" / "pyproject.toml", (1, 1))
     ready = complete.folder / ".ready"
     ready.touch()

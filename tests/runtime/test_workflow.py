@@ -17,12 +17,12 @@ def actionlint(path: Path) -> subprocess.CompletedProcess:
     return subprocess.run([tool("actionlint"), str(path)], capture_output=True, text=True, check=False)
 
 
-def test_actionlint_finds_nothing():
+def test_actionlint_reports_nothing():
     done = actionlint(WORKFLOW)
     assert done.returncode == 0, done.stdout
 
 
-def test_actionlint_is_awake(tmp_path):
+def test_actionlint_reports_a_mistake(tmp_path):
     wrong = tmp_path / "wrong.yml"
     wrong.write_text(WORKFLOW.read_text().replace("runs-on: ubuntu-24.04\n", "runs-on: ubuntu-1.0\n", 1))
     assert actionlint(wrong).returncode == 1

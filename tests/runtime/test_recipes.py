@@ -38,9 +38,14 @@ def conan():
 def test_conan_builds_the_core_and_a_consumer_runs(conan, shared):
     """Without the loader: OpenEXR would come over the network."""
     options = ["-o", "hairlut/*:exr=False", "-o", f"hairlut/*:shared={shared}"]
-    said = conan(
-        "create", str(RECIPES / "conan"), *options, "-c", "tools.cmake.cmaketoolchain:generator=Ninja"
-    )
+    folder = BUILD / "tests" / "conan-consumer"
+    for setting in (
+        "tools.cmake.cmaketoolchain:generator=Ninja",
+        "tools.cmake.cmaketoolchain:user_presets=",
+        f"tools.cmake.cmake_layout:test_folder={folder}",
+    ):
+        options += ["-c", setting]
+    said = conan("create", str(RECIPES / "conan"), *options)
     assert f"hairlut/{version()} (test package): Running test()" in said
     packages = list((BUILD / "tests" / "conan").rglob("p/share/hairlut/luts/fitted/mixture.exr"))
     assert packages

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The lobe explorer: one HTML page that draws with the shipped shader from the models inside it."""
 
 import base64

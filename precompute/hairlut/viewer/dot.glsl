@@ -1,4 +1,5 @@
 #version 300 es
+// SPDX-License-Identifier: BSD-3-Clause
 precision highp float;
 in float facing;
 out vec4 colour;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 in vec3 numbers;
 out vec4 drawn; // theta_i, phi_i, pdf_angle, pdf_solid_angle
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 in vec2 direction; // theta_i, phi_i
 uniform int part;  // the lobe to invert: as it stands, or, in the whole hair, mirrored and turned
 out vec3 evaluated; // u_theta, u_phi, density

@@ -1,4 +1,5 @@
 #version 300 es
+// SPDX-License-Identifier: BSD-3-Clause
 precision highp float;
 precision highp int;
 uniform highp sampler2D hairs; // the stream of one model, 1024 texels wide

@@ -1,4 +1,5 @@
 #version 300 es
+// SPDX-License-Identifier: BSD-3-Clause
 in vec4 drawn;
 uniform mat3 turn;
 uniform float radius;

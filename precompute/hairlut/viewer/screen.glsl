@@ -1,4 +1,5 @@
 #version 300 es
+// SPDX-License-Identifier: BSD-3-Clause
 out vec2 place;
 
 void main()

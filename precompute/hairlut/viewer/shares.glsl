@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 in vec2 place;  // offset, lobe
 out vec3 share; // of the lobe, its turn, side
 

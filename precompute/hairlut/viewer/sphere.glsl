@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 in vec2 place;
 uniform mat3 turn;    // world to view
 uniform float radius; // of the sphere, in half the canvas

@@ -26,6 +26,7 @@ TYPES = {"float": "f32", "int": "i32", "bool": "bool", "hairlut_float4": "vec4f"
 def assembled(language: str) -> str:
     """The text of hairlut.<language>."""
     prologue, body = ((HERE / name).read_text() for name in (f"prologue.{language}", "body.inl"))
+    _, body = body.split("\n", 1)  # the licence, which the prologue has too
     return prologue + "\n" + (wgsl(body) if language == "wgsl" else body) + EPILOGUES[language]
 
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 HAIRLUT_CONST int hairlut_uniform = 0; // azimuths: see hairlut_axis
 HAIRLUT_CONST int hairlut_difference = 1;
 HAIRLUT_CONST int hairlut_sum = 2;

@@ -11,6 +11,11 @@ from engine.test_images import ONE_SCATTERING, PATH, SIGMAS, batch_means, deviat
 from engine.test_plugin import VIEWERS
 
 import hairlut
+from hairlut import exr, slopes
+from hairlut.mixture import Mixture
+from hairlut.model import BakedLobe, BakedModel
+from hairlut.table import Table
+from hairlut.warp import Warp
 from report.hairscene.nearfield import contrasted, light
 from report.hairscene.scene import Hair, brown_hair, scene_dict, strand_points, write_strands
 from report.hairscene.shares import with_shares
@@ -73,6 +78,48 @@ def test_densities_are_those_of_the_c_library(llvm, model):
     # a density jumps where a lobe's domain ends, and rounding moves a direction across
     assert np.quantile(off, 0.999) < 1e-3
     assert np.median(off) < 1e-5
+
+
+def table(name, domain, azimuth, texels):
+    """A table of two rows, whose texels (W,) the second row moves by a tenth of the way to the high end."""
+    rows = np.stack([texels, texels + 0.1 * (texels[-1] - texels) * (texels > texels[0])]).astype(np.float32)
+    warp = Warp("octaves", 1e-3)
+    return Table(
+        "odd", name, name.rsplit("_")[-1].replace("theta", "theta_i"), azimuth, domain, (-1.2, 1.4), "none",
+        warp, rows, slopes.derived(rows, warp.widths(len(texels))).astype(np.float32), np.zeros(2),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def odd():
+    """What no shipped model has: narrow domains, sums of azimuths, offsets not mirrored, shares of 0."""
+    theta = table("a_theta", (-1.0, 0.8), "none", np.array([-1.0, -0.4, -0.1, 0.0, 0.3, 0.8]))
+    phi = table("a_phi", (1.0, 2.5), "sum", np.array([1.0, 1.4, 1.6, 1.7, 2.5]))
+    other = table("b_phi", (0.0, 2 * np.pi), "difference", np.array([0.0, 2.0, 3.0, 4.0, 2 * np.pi]))
+    lobes = BakedLobe("a", theta, phi), BakedLobe("b", theta, other), BakedLobe("c", theta, None)
+    share = np.array([[[0.2, 0.0, 3.0]], [[0.8, 1.0, 0.0]], [[0.0, 1.0, 1.0]]])
+    turn = np.array([[[3.0, -3.0, 1.0]], [[0.0, 0.5, 20.0]], [[0.0, 0.0, 0.0]]])
+    mixture = Mixture(("a", "b", "c"), np.zeros(1), np.array([-0.9, 0.1, 1.0]), share, turn)
+    return BakedModel("odd", lobes, mixture)
+
+
+def test_an_odd_model_is_read_as_its_files_say(llvm, odd, tmp_path):
+    exr.write_model(tmp_path, odd)
+    bsdf, context = make(llvm, model=str(tmp_path)), llvm.BSDFContext()
+    theta_r, phi_r, offset = places(13)
+    theta_i, phi_i, _ = places(14)
+    si = vectors.interactions(llvm, theta_r, phi_r)
+    wo = vectors.directions(llvm, theta_i, phi_i)
+    density = np.array(bsdf.pdf(context, si, wo)) * np.cos(theta_i)
+    expected = odd.pdf(theta_r, phi_r, theta_i, phi_i, offset)
+    assert 0.2 < (expected == 0).mean() < 0.9
+    # but for directions that rounding moves across an end of a domain, or into the next cell
+    assert np.mean(abs(density - expected) > 1e-4 * expected + 1e-6) < 1e-3
+    u, v = vectors.numbers(llvm, PLACES, 15)
+    drawn, _ = bsdf.sample(context, si, u, v)
+    theta_i, phi_i, _ = odd.sample(theta_r, phi_r, np.stack([u, *np.array(v)], -1), offset)
+    apart = np.linalg.norm(np.array(drawn.wo) - np.array(vectors.directions(llvm, theta_i, phi_i)), axis=0)
+    assert np.quantile(apart, 0.999) < 2e-5
 
 
 @pytest.mark.parametrize("model", MODELS)

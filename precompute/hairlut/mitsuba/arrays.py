@@ -28,15 +28,15 @@ class Records:
         return list(dr.gather(mi.ArrayXf, self._rows, i, shape=shape))
 
 
-def last(count: Number, most: int, holds: Callable[[Number], Number]) -> Number:
-    """The last i in [0, count) of which holds(i) is true, by halving; it is true up to some i, then false.
+def last(count: Number, most: int, is_below: Callable[[Number], Number]) -> Number:
+    """The last i in [0, count) with is_below(i), by halving; is_below is true up to some i, then false.
 
-    holds(0) is taken for true. most: the largest count, which is as long as the search takes.
+    is_below(0) is taken for true. most: the largest count, on which the number of steps depends.
     """
-    found = mi.UInt32(0)
+    i = mi.UInt32(0)
     step = 1 << max(most - 1, 0).bit_length() >> 1
     while step:
-        next_ = dr.minimum(found + step, count - 1)
-        found = dr.select(holds(next_), next_, found)
+        candidate = dr.minimum(i + step, count - 1)
+        i = dr.select(is_below(candidate), candidate, i)
         step >>= 1
-    return found
+    return i

@@ -53,8 +53,7 @@ class Sampler:
             if phi is not None:
                 relative = side * (phi_i - sign * phi_r) - turn
                 relative -= dr.two_pi * dr.floor(relative / dr.two_pi)
-                table = self._axes.fixed(phi)
-                around = self._axes.pdf(table, theta_r, dr.minimum(relative, table.high))
+                around = self._axes.pdf(self._axes.fixed(phi), theta_r, relative)
             density += share * along * around
         return density / sum(shares)
 

@@ -125,3 +125,20 @@ def test_an_engines_own_flags_change_no_bit(tmp_path, compiler, options):
     theirs, ours = (checksums(check) for check in (folder / "batch_check", program))
     assert len(theirs) == 1
     assert theirs == ours
+
+
+@pytest.mark.parametrize("machine", ["x86_64", "aarch64"])
+def test_sources_compile_as_for_msvc(tmp_path, machine):
+    """clang takes MSVC's part: its macros, its intrinsics, none of gcc's; msvc/ stands for its C library."""
+    if not tool("clang"):
+        pytest.skip("clang is not installed")
+    mode = [f"--target={machine}-pc-windows-msvc", "-fms-compatibility-version=19.38", "-nostdlibinc"]
+    mode += ["-ffreestanding", "-isystem", str(HERE / "msvc"), "-std=c99", "-Wall", "-Wextra", "-Werror"]
+    for source, processor, flags in listed("hairlut"):
+        own = flags if processor == "x86" and machine == "x86_64" else []
+        run(
+            tool("clang"), *mode, *own, *INCLUDE, "-DHAIRLUT_BUILDING", "-c", source, "-o", tmp_path / "x.obj"
+        )
+    text = (SOURCE / "cpu.h").read_text()
+    assert "__cpuidex" in text
+    assert "_xgetbv" in text

@@ -148,7 +148,7 @@ TEXT = f"""# Hard cases
 
 Each case is baked at {SIDE}x{SIDE}, with the e that suits it best, and measured on every row and at three
 points between rows; or it is refused, with the message given. The same cases are tests
-(`tests/precompute/test_hard.py`), and the narrowest lobes pass chi-squared tests there, drawn by the C
+(`tests/report/test_hard.py`), and the narrowest lobes pass chi-squared tests there, drawn by the C
 library in single precision.
 
 V is the relative variance that the table adds to an estimate, `heavy` the probability of a weight above 4.
@@ -161,27 +161,25 @@ What this says:
 
 - **Narrow lobes** work down to sigma = 1e-4 (0.006 degrees). Their largest weights are large and almost never
   drawn: the first and last cell reach from the lobe to the ends of the domain, 15000 sigma away, because a
-  direction that the table could never draw is energy that no weight restores.
+  direction that the table can never sample is energy that no weight restores.
 - **A valley** is what this design does worst. Two separate modes, or a gap of zero density, put a jump into
-  the inverse CDF at a probability where the warp has its widest cells: V is 0.16 at 64 columns, 0.04 at 256
-  and 0.01 at 1024. Such a distribution is two lobes: bake them as two tables and choose between them
-  by their masses, as `hairlut_sample_mixture` does.
+  the inverse CDF at a probability where the warp has its widest cells. Make such a distribution two lobes of
+  a model, with their masses as shares.
 - **A jump** of the density costs one badly fitting cell: V falls as 1/width, not as 1/width^4.
 - **Ends that are cut**, and means far outside, cost little until the density falls off within a few hundred
   float steps of the domain's end: the mean 40 sigma outside with sigma = 0.01 decays over 2.5e-4 rad, and
   floats near pi/2 are 1.2e-7 apart.
 """
 
-TAILS = """The shipped tables, in the row where the draw misses the lobe's quantile by most. The end cells
-reach to the domain's end, so draws this rare land farther out than the lobe would put them, with the density
-that says so.
+TAILS = """The shipped tables, in the row where the sample is farthest from the lobe's quantile. The end cells
+reach to the domain's end, so samples this rare lie farther out than the lobe's, with a density to match.
 """
 
 
 CASE_COLUMNS = (
     "case", "V", "largest weight", "heavy", "TV", "quantile error, u in [2^-12, 1-2^-12]", "narrowest cell",
 )  # fmt: skip
-END_COLUMNS = "table", "u", "angle drawn", "exact quantile", "least density"
+END_COLUMNS = "table", "u", "angle sampled", "exact quantile", "least density"
 
 
 def page(outcomes: list[Outcome], draws: list[End]) -> str:

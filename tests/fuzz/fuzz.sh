@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Coverage-guided fuzzing: fuzz.sh [SECONDS of each fuzzer, 15]. The targets: files through the loader; models in memory; models
 # written to files and loaded again. Prints what was run and how many branches of runtime/src each one reaches. New inputs go to
 # build/fuzz/; a crash leaves its input there and fails.

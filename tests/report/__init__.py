@@ -8,35 +8,23 @@ from tempfile import TemporaryDirectory
 
 from report.markdown import table
 
+REPORT, RENDER = "`make report`", "`make render`"
 PAGES = (
-    (
-        "[Speed](speed.md)",
-        "whole calls beside their rivals; time and variance of a sample, at every size",
-    ),
-    (
-        "[Scale](scale.md)",
-        "what more lobes, offsets, rows, columns and threads cost",
-    ),
-    (
-        "[Hard cases](hard_cases.md)",
-        "narrow, cut, split, flat and broken densities: with which error they work",
-    ),
-    (
-        "[The study](study.md)",
-        "why this warp, these cells, these ends: every alternative on the same measure",
-    ),
-    (
-        "[Quasi-random numbers](quasi.md)",
-        "the error of a lighting integral with Sobol points, beside the exact inverse's",
-    ),
-    ("[In a renderer](render.md)", "variance and bias of a rendered lock of hair"),
-    ("[A scene's own hair](fit.md)", "tables fitted to a hair BSDF, beside that BSDF's own sampler"),
-    ("[Shaders](shaders.md)", "the same tables on the GPU's side, checked against C"),
-    ("[Explorer](explorer.html)", "the lobes to play with, in a browser"),
-)
+    ("[Speed](speed.md)", "whole calls beside their rivals; time and variance of a sample, at every size", REPORT),
+    ("[Scale](scale.md)", "what more lobes, offsets, rows, columns and threads cost", REPORT),
+    ("[Hard cases](hard_cases.md)", "the error of narrow, cut, split, flat and broken densities", REPORT),
+    ("[The study](study.md)", "why this warp, these cells, these ends: every alternative measured alike", REPORT),
+    ("[Quasi-random numbers](quasi.md)", "the error of a lighting integral with Sobol points, beside the exact inverse's", REPORT),
+    ("[From a BSDF to a lock](own_hair.md)", "a function becomes textures, and a rendered lock of hair, step by step", RENDER),
+    ("[In a renderer](render.md)", "variance and bias of a rendered lock of hair", RENDER),
+    ("[Mitsuba](variants.md)", "what a picture costs with the C++ plugin and with the Dr.Jit BSDF", RENDER),
+    ("[A scene's own hair](fit.md)", "tables fitted to a hair BSDF, beside that BSDF's own sampler", "`python -m report.fitted_hair`"),
+    ("[Shaders](shaders.md)", "the same models in shaders, compared with C", REPORT),
+    ("[Explorer](explorer.html)", "lobes, samples and densities to play with, in a browser", REPORT),
+)  # fmt: skip
 
 AFTER = """
-`make report` writes the first five again, `hairlut plot luts` draws each table.
+`hairlut plot luts` draws each table.
 
 ![Time per sample against relative variance](speed_error.svg)
 
@@ -46,7 +34,7 @@ AFTER = """
 
 def index() -> str:
     """The page that leads to the others."""
-    return "# Report\n\n" + table(("page", "what it answers"), PAGES) + AFTER
+    return "# Report\n\n" + table(("page", "what it shows", "made by"), PAGES) + AFTER
 
 
 @contextmanager

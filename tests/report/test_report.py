@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The report's parts: pages with every row, figures that exist, and the bake's speed as a
 ratio."""
 
@@ -8,7 +9,8 @@ from bench.timing import Times
 from hairlut import exr
 from hairlut.lobes import FITTED, MODELS
 from hairlut.warp import Warp
-from report import bake_speed, markdown, study
+from report import bake_speed, index, markdown, study
+from report.places import PAGES
 
 matplotlib = pytest.importorskip("matplotlib", reason="figures need pip install 'precompute[report]'")
 
@@ -35,6 +37,12 @@ def test_the_bake_is_fast_and_exact():
     assert polynomial.seconds > 15 * ours.seconds  # loose: half of what an idle core shows
     assert ours.error <= 1e-12
     assert ours.error <= min(polynomial.error, truncnorm.error)
+
+
+def test_index_leads_to_every_page():
+    assert (PAGES / "README.md").read_text() == index()
+    names = {page.name for page in PAGES.iterdir() if page.suffix in (".md", ".html")} - {"README.md"}
+    assert all(f"]({name})" in index() for name in names), names
 
 
 def test_markdown_table():

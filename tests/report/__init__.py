@@ -8,20 +8,34 @@ from tempfile import TemporaryDirectory
 
 from report.markdown import table
 
-REPORT, RENDER = "`make report`", "`make render`"
-PAGES = (
-    ("[Speed](speed.md)", "whole calls beside their rivals; time and variance of a sample, at every size", REPORT),
-    ("[Scale](scale.md)", "what more lobes, offsets, rows, columns and threads cost", REPORT),
-    ("[Hard cases](hard_cases.md)", "the error of narrow, cut, split, flat and broken densities", REPORT),
-    ("[The study](study.md)", "why this warp, these cells, these ends: every alternative measured alike", REPORT),
-    ("[Quasi-random numbers](quasi.md)", "the error of a lighting integral with Sobol points, beside the exact inverse's", REPORT),
-    ("[From a BSDF to a lock](own_hair.md)", "a function becomes textures, and a rendered lock of hair, step by step", RENDER),
-    ("[In a renderer](render.md)", "variance and bias of a rendered lock of hair", RENDER),
-    ("[Mitsuba](variants.md)", "what a picture costs with the C++ plugin and with the Dr.Jit BSDF", RENDER),
-    ("[A scene's own hair](fit.md)", "tables fitted to a hair BSDF, beside that BSDF's own sampler", "`python -m report.fitted_hair`"),
-    ("[Shaders](shaders.md)", "the same models in shaders, compared with C", REPORT),
-    ("[Explorer](explorer.html)", "lobes, samples and densities to play with, in a browser", REPORT),
-)  # fmt: skip
+PAGES = {
+    "make report": (
+        (
+            "Speed",
+            "speed.md",
+            "whole calls beside their rivals; time and variance of a sample, at every size",
+        ),
+        ("Scale", "scale.md", "what more lobes, offsets, rows, columns and threads cost"),
+        ("Hard cases", "hard_cases.md", "the error of narrow, cut, split, flat and broken densities"),
+        ("The study", "study.md", "why this warp, these cells, these ends: every alternative measured alike"),
+        (
+            "Quasi-random numbers",
+            "quasi.md",
+            "a lighting integral with Sobol points, beside the exact inverse",
+        ),
+        ("Shaders", "shaders.md", "the same models in shaders, compared with C"),
+        ("Explorer", "explorer.html", "lobes, samples and densities to play with, in a browser"),
+    ),
+    "make render": (
+        ("From a BSDF to a lock", "own_hair.md", "a function becomes textures, and a rendered lock of hair"),
+        ("In a renderer", "render.md", "variance and bias of a rendered lock of hair"),
+        ("Mitsuba", "variants.md", "what a picture costs with the C++ plugin and with the Dr.Jit BSDF"),
+    ),
+    "python -m report.fitted_hair": (
+        ("A scene's own hair", "fit.md", "tables fitted to a hair BSDF, beside that BSDF's own sampler"),
+    ),
+}
+"""By the command that makes them: title, file, what the page shows."""
 
 AFTER = """
 `hairlut plot luts` draws each table.
@@ -34,7 +48,12 @@ AFTER = """
 
 def index() -> str:
     """The page that leads to the others."""
-    return "# Report\n\n" + table(("page", "what it shows", "made by"), PAGES) + AFTER
+    rows = [
+        (f"[{title}]({name})", shows, f"`{command}`")
+        for command, pages in PAGES.items()
+        for title, name, shows in pages
+    ]
+    return "# Report\n\n" + table(("page", "what it shows", "made by"), rows) + AFTER
 
 
 @contextmanager

@@ -13,15 +13,15 @@ PAGES = {
         (
             "Speed",
             "speed.md",
-            "whole calls beside their rivals; time and variance of a sample, at every size",
+            "whole calls beside their rivals; time and variance of a sample",
         ),
         ("Scale", "scale.md", "what more lobes, offsets, rows, columns and threads cost"),
         ("Hard cases", "hard_cases.md", "the error of narrow, cut, split, flat and broken densities"),
-        ("The study", "study.md", "why this warp, these cells, these ends: every alternative measured alike"),
+        ("The study", "study.md", "why this warp, these cells, these ends: all alternatives"),
         (
             "Quasi-random numbers",
             "quasi.md",
-            "a lighting integral with Sobol points, beside the exact inverse",
+            "lighting integrals with Sobol points, beside the exact inverse",
         ),
         ("Shaders", "shaders.md", "the same models in shaders, compared with C"),
         ("Explorer", "explorer.html", "lobes, samples and densities to play with, in a browser"),

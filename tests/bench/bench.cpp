@@ -50,7 +50,7 @@ void add(const std::string &name, const Call &call)
     benchmark::RegisterBenchmark(name.c_str(), [call](benchmark::State &state) { time_call(state, call, inputs.view()); });
 }
 
-// All threads draw from one model; the time is the processor's for a sample of any of them.
+// All threads draw from one model; the time is that of a processor for a sample, over the number of threads.
 void add_threads(const std::string &name, const Call &call, int threads)
 {
     benchmark::RegisterBenchmark((name + std::to_string(threads)).c_str(), [call](benchmark::State &state) {

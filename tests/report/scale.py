@@ -135,14 +135,15 @@ def calculation(times: Times) -> str:
 
 
 def threads(times: Times) -> str:
-    """What a vertex takes a thread, when so many draw from one model at once."""
+    """What a vertex takes each thread, when so many draw from one model at once. The benchmark's ns are those of
+    all threads together."""
     rows = []
     for model in ("fitted", "brown"):
         one = times.least(model, "vertex", "hairlut", "threads1")
         for count in (2**k for k in range(9)):
             ns = times.least(model, "vertex", "hairlut", f"threads{count}")
             if one and ns:
-                rows.append((model, count, f"{ns:.1f}", f"{count * one / ns:.2f}"))
+                rows.append((model, count, f"{count * ns:.1f}", f"{one / ns:.2f}"))
     return markdown_table(
-        ("model", "threads", "ns of a processor's time", "so many times as fast as one"), rows
+        ("model", "threads", "ns of each thread's processor", "all together, times one"), rows
     )

@@ -80,7 +80,7 @@ def test_scale_page_fits_a_line(tmp_path):
         each.name for each in tmp_path.iterdir()
     }
     repeats = {f"lobes-{k}/vertex/hairlut/one": [10.0 + 5 * k] for k in scale.LOBES}
-    repeats |= {"fitted/vertex/hairlut/threads1": [8.0], "fitted/vertex/hairlut/threads2": [8.2]}
+    repeats |= {"fitted/vertex/hairlut/threads1": [8.0], "fitted/vertex/hairlut/threads2": [4.1]}
     text = scale.page(Times(repeats, "a processor", {f"lobes-{k}": 1000 * k for k in scale.LOBES}))
     assert "10.0 + 5.0 K" in text
     assert "| fitted | 2 | 8.2 | 1.95 |" in text

@@ -135,7 +135,7 @@ def calculation(times: Times) -> str:
 
 
 def threads(times: Times) -> str:
-    """What a vertex takes each thread, when so many draw from one model at once. The benchmark's ns are those of
+    """What a vertex takes each thread, when so many draw from one model at once. The benchmark's ns are of
     all threads together."""
     rows = []
     for model in ("fitted", "brown"):

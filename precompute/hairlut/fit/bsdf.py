@@ -40,8 +40,30 @@ def load(path: Path) -> tuple[Density, bool]:
     if not callable(function):
         raise HairlutError(f"{path}: has no bsdf: {EXPECTED}")
     count = _arguments(path, function)
-    called = guarded(function, path)
-    return lambda *at: _density(path, called, at[:count], at), count == 4
+    return _Bsdf(path, guarded(function, path), count), count == 4
+
+
+class _Bsdf:
+    """The density of a file's function. It gets arrays that broadcast; where it cannot take them, because it
+    selects elements of one by another, full arrays."""
+
+    def __init__(self, path: Path, function: Callable, count: int):
+        self._path, self._function, self._count, self._full = path, function, count, False
+
+    def __call__(self, *at: Array) -> Array:
+        given = at[: self._count]
+        if not self._full:
+            try:
+                return _density(self._path, self._function, given, at)
+            except HairlutError as error:
+                first = error
+        full = tuple(np.array(x) for x in np.broadcast_arrays(*given))
+        try:
+            values = _density(self._path, self._function, full, at)
+        except HairlutError as error:
+            raise error if self._full else first from None
+        self._full = True
+        return values
 
 
 def _arguments(path: Path, function: Callable) -> int:

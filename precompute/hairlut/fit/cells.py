@@ -20,8 +20,8 @@ Density = Callable[[Array, Array, Array, Array], Array]
 unit."""
 
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # two points a cell and axis, of equal weight
-FINE = 2000  # points along theta_i, and
-AROUND = 256  # around the fibre, by which the cells of theta_i are chosen
+FINE = 1000  # points along theta_i, and
+AROUND = 96  # around the fibre, by which the cells of theta_i are chosen
 MIXED = 0.2  # part of the cells that is even
 STEEPNESS = 1 / 3  # cells are as dense as this power of the light: it follows a lobe into its tails
 HARMONICS = 2048  # points around the fibre by which the number of the azimuth's cells is chosen

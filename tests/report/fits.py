@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fits every hair of hairs.py and measures the textures through the C library, by a quadrature that the fit
+has no part in; the page is fits_page.py's.
+
+    PYTHONPATH=tests .venv/bin/python -m report.fits [--hair NAME]...      a quarter of an hour of one core
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from pathlib import Path
+from time import process_time
+
+import numpy as np
+
+import hairlut
+from hairlut.exr import write_model
+from hairlut.files import write_whole
+from hairlut.fit import hair, refine, says
+from report import fits_page
+from report.hairs import Subject, far_field, near_field
+from report.places import PAGES
+
+VIEWERS = np.radians(-90 + 22.5 * (np.arange(8) + 0.5) + 2.1)  # even over the hemisphere, between rows
+OFFSETS = (np.arange(6) + 0.41) / 6
+POINTS = 720, 512
+BRIGHT = 1e-4
+TOLERANCE, BUDGET = 0.01, 600.0
+DATA = PAGES / "fits.json"
+
+
+def measured(subject: Subject) -> dict:
+    """What a fit costs, promises and keeps."""
+    start = process_time()
+    given = hair.of_density(subject.density, subject.offsets)
+    found = refine.fit(given, "hair", TOLERANCE, None, BUDGET, lambda stage, share: None)
+    with tempfile.TemporaryDirectory() as folder:
+        paths = write_model(Path(folder), says.with_errors(found))
+        seconds = process_time() - start
+        size = sum(path.stat().st_size for path in paths)
+        model = hairlut.load(folder)
+        kept = quadrature(subject, lambda *at: model.pdf(at[0], 0.0, at[1], at[2], offset=at[3]))
+    told = says.promise(found)
+    row = {
+        "promise": told.relative_variance,
+        "promise_low": told.low,
+        "promise_high": told.high,
+        "promise_weight": told.largest_weight,
+        "lobes": len(found.model.lobes),
+        "seconds": seconds,
+        "bytes": size,
+        "limits": refine.limits(found, TOLERANCE),
+        **kept,
+    }
+    return row | ({"own": quadrature(subject, subject.own)} if subject.own else {})
+
+
+def quadrature(subject: Subject, pdf) -> dict:
+    """V at each viewer, the mean over offsets, the largest weight, and the variance of one draw's estimate
+    in lamps, at a random offset, by midpoints."""
+    n, m = POINTS
+    theta_i = ((np.arange(n) + 0.5) / n - 0.5)[:, None] * np.pi
+    phi = (np.arange(m) + 0.5) / m * 2 * np.pi
+    size = np.pi / n * 2 * np.pi / m
+    lamps = light(theta_i, phi)
+    offsets = OFFSETS if subject.offsets else np.zeros(1)
+    variance, weight, in_lamps = [], 0.0, []
+    for theta_r in VIEWERS:
+        here, first, second = [], 0.0, 0.0
+        for offset in offsets:
+            p = np.broadcast_to(subject.density(theta_r, theta_i, phi, offset), (n, m))
+            q = np.broadcast_to(np.asarray(pdf(theta_r, theta_i, phi, offset), float), (n, m))
+            total = p.sum() * size
+            square = p * (p / np.maximum(q, 1e-300))
+            here.append(square.sum() * size / total**2 - 1)
+            first += (p * lamps).sum() * size
+            second += (square * lamps**2).sum() * size
+            per_steradian = p / np.cos(theta_i)
+            bright = per_steradian > BRIGHT * per_steradian.max()
+            weight = max(weight, float((p / total / np.maximum(q, 1e-300))[bright].max()))
+        variance.append(float(np.mean(here)))
+        in_lamps.append(float(second / first**2 * len(offsets) - 1))
+    return {"variance": variance, "weight": weight, "lamps": in_lamps}
+
+
+def light(theta_i, phi):
+    """Radiance of a dim sky, a bright window, and a small lamp."""
+    window = (abs(theta_i - 0.5) < 0.35) & (abs(phi - 2.0) < 0.6)
+    lamp = np.exp(-0.5 * ((theta_i + 0.3) ** 2 + (phi - 4.2) ** 2) / 0.05**2)
+    return 0.3 + 5.0 * window + 200.0 * lamp
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="report.fits", description=__doc__.splitlines()[0])
+    parser.add_argument("--hair", action="append", help="one hair alone; may be repeated")
+    parser.add_argument("--missing", action="store_true", help="only hairs that the last run did not come to")
+    args = parser.parse_args()
+    results = json.loads(DATA.read_text()) if DATA.exists() else {}
+    for subject in far_field() + near_field():
+        if (args.hair and subject.name not in args.hair) or (args.missing and subject.name in results):
+            continue
+        results[subject.name] = measured(subject)
+        shown = results[subject.name]
+        print(
+            subject.name, f"V {np.mean(shown['variance']):.4f}", f"weight {shown['weight']:.1f}", flush=True
+        )
+        write_whole(DATA, f"{json.dumps(results, indent=1)}\n".encode())
+    print(write_whole(PAGES / "fits.md", fits_page.page(results).encode()))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of fits.py's numbers: every hair beside the sampler of its authors, and the targets that it meets
+or not."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from report.markdown import table
+
+SAMPLES, WEIGHT, KILOBYTES, SECONDS, ROUGH_SECONDS = 1.02, 10.0, 256, 60.0, 20.0
+FAR_VARIANCE, LAMPS = 0.01, 1.05
+PROMISE = 0.25, 0.003
+
+TEXT = """# Hairs that nobody here derived a sampler for
+
+`hairlut fit` gets each hair as a function and nothing else. The numbers below are of its textures, read
+through the C library, by a midpoint rule of 720 x 512 directions at 8 viewers between the rows and {offsets}
+offsets: a quadrature that the fit has no part in. V is the relative variance of a draw whose offset is
+known, the mean over the offsets. The largest weight is that of the brightest directions, above 1e-4 of the
+peak of f cos(theta_i). Seconds are of one core, for evaluating, fitting, baking and measuring.
+
+    PYTHONPATH=tests .venv/bin/python -m report.fits
+
+"""
+
+
+NEAR = f"""## Near field: Chiang et al. 2016
+
+The authors' sampler chooses a lobe by its attenuation and draws both angles exactly; for one wavelength it is
+perfect, so that 1 + V is what the textures cost. Targets: at most {SAMPLES} times its samples, weights up to
+{WEIGHT:.0f}, promises within 25 % or 0.003 of V, textures of {KILOBYTES} KB, {SECONDS:.0f} s
+({ROUGH_SECONDS:.0f} s for beta_m of 0.3 and more), and in a sky with a window and a small lamp at most
+{LAMPS} times its variance, mean over the viewers. """
+
+
+def page(results: dict[str, dict]) -> str:
+    """The page in Markdown."""
+    near = {name: row for name, row in results.items() if "own" in row}
+    far = {name: row for name, row in results.items() if "own" not in row}
+    return TEXT.format(offsets=6) + _near(near) + _far(far)
+
+
+def _near(rows: dict[str, dict]) -> str:
+    if not rows:
+        return ""
+    columns = (
+        "hair: beta_m beta_n absorption",
+        "samples, own = 1",
+        "V",
+        "worst viewer",
+        "promised V",
+        "weight",
+        "own weight",
+        "in lamps, own = 1",
+        "worst viewer in lamps",
+        "lobes",
+        "KB",
+        "s",
+        "misses",
+    )
+    shown = []
+    for name, row in rows.items():
+        own, v = row["own"], np.array(row["variance"])
+        lamps = np.array(row["lamps"]) / np.array(own["lamps"])
+        shown.append(
+            (
+                name.removeprefix("chiang "),
+                f"{_samples(row):.4f}",
+                f"{v.mean():.4f}",
+                f"{v.max():.4f}",
+                f"{row['promise']:.4f} ({row['promise_low']:.4f} to {row['promise_high']:.4f})",
+                f"{row['weight']:.1f}",
+                f"{own['weight']:.1f}",
+                f"{lamps.mean():.3f}",
+                f"{lamps.max():.3f}",
+                row["lobes"],
+                f"{row['bytes'] / 1024:.0f}",
+                f"{row['seconds']:.0f}",
+                ", ".join(_near_misses(name, row)) or "none",
+            )
+        )
+    missed = sum(bool(_near_misses(name, row)) for name, row in rows.items())
+    met = f"{len(rows) - missed} of {len(rows)} hairs meet them all."
+    return f"{NEAR}{met}\n\n{table(columns, shown)}\n"
+
+
+def _samples(row: dict) -> float:
+    return float((1 + np.mean(row["variance"])) / (1 + np.mean(row["own"]["variance"])))
+
+
+def _near_misses(name: str, row: dict) -> list[str]:
+    rough = float(name.split()[1]) >= 0.3
+    lamps = np.array(row["lamps"]) / np.array(row["own"]["lamps"])
+    return [
+        what
+        for what, missed in (
+            ("samples", _samples(row) > SAMPLES),
+            ("weight", row["weight"] > WEIGHT),
+            ("promise", not _kept(row)),
+            ("size", row["bytes"] > KILOBYTES * 1024),
+            ("time", row["seconds"] > (ROUGH_SECONDS if rough else SECONDS)),
+            ("lamps", lamps.mean() > LAMPS),
+        )
+        if missed
+    ]
+
+
+def _kept(row: dict) -> bool:
+    v = float(np.mean(row["variance"]))
+    return abs(row["promise"] - v) <= max(PROMISE[0] * v, PROMISE[1])
+
+
+def _far(rows: dict[str, dict]) -> str:
+    if not rows:
+        return ""
+    columns = ("hair", "V", "worst viewer", "promised V", "weight", "lobes", "KB", "s", "misses")
+    shown = []
+    for name, row in rows.items():
+        v = np.array(row["variance"])
+        misses = [
+            what
+            for what, missed in (
+                ("V", v.max() > FAR_VARIANCE),
+                ("weight", row["weight"] > WEIGHT),
+                ("promise", not _kept(row)),
+            )
+            if missed
+        ]
+        shown.append(
+            (
+                name,
+                f"{v.mean():.4f}",
+                f"{v.max():.4f}",
+                f"{row['promise']:.4f}",
+                f"{row['weight']:.1f}",
+                row["lobes"],
+                f"{row['bytes'] / 1024:.0f}",
+                f"{row['seconds']:.0f}",
+                ", ".join(misses) or "none",
+            )
+        )
+    return (
+        "## Far field\n\n"
+        f"Targets: V of at most {FAR_VARIANCE} at every viewer, weights up to {WEIGHT:.0f}.\n\n"
+        + table(columns, shown)
+    )

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The authors' samplers that fits are held against, and what the page calls a miss."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from report import fits_page
+from report.hairs import Chiang, far_field, near_field
+
+DRAWS = 40_000
+ALPHA = 1e-3
+CELLS = 12, 12
+
+
+@pytest.mark.parametrize("settings", [(0.3, 0.3, 0.6), (0.1, 0.6, 0.1)])
+@pytest.mark.parametrize("place", [(0.2, 0.3), (-1.1, 0.7)])
+def test_chiangs_sampler_draws_its_density(settings, place):
+    """Chi-squared of draws in cells, each of whose masses is a sum over the density."""
+    hair = Chiang(*settings)
+    assert p_value(hair, place, hair.sample) > ALPHA
+
+
+def test_a_sampler_of_another_width_would_fail():
+    hair, broader = Chiang(0.3, 0.3, 0.6), Chiang(0.33, 0.3, 0.6)
+    assert p_value(hair, (0.2, 0.3), broader.sample) < ALPHA
+
+
+def p_value(hair, place, sample):
+    theta_r, offset = place
+    theta_i, phi = sample(theta_r, offset, np.random.default_rng(1).random((DRAWS, 4)))
+    edges = np.linspace(-np.pi / 2, np.pi / 2, CELLS[0] + 1), np.linspace(0, 2 * np.pi, CELLS[1] + 1)
+    count, _, _ = np.histogram2d(theta_i, phi, bins=edges)
+    fine = 60
+    t = ((np.arange(CELLS[0] * fine) + 0.5) / (CELLS[0] * fine) - 0.5) * np.pi
+    p = (np.arange(CELLS[1] * fine) + 0.5) / (CELLS[1] * fine) * 2 * np.pi
+    mass = hair.own(theta_r, t[:, None], p, offset) * (np.pi / t.size) * (2 * np.pi / p.size)
+    mass = mass.reshape(CELLS[0], fine, CELLS[1], fine).sum(axis=(1, 3))
+    assert mass.sum() == pytest.approx(1, abs=1e-3)
+    expected = (DRAWS * mass / mass.sum()).ravel()
+    kept = expected > 8
+    found = np.append(count.ravel()[kept], count.ravel()[~kept].sum())
+    told = np.append(expected[kept], max(expected[~kept].sum(), 1e-9))
+    return (
+        stats.chisquare(found, told).pvalue
+        if told[-1] > 1
+        else stats.chisquare(found[:-1], told[:-1] * found[:-1].sum() / told[:-1].sum()).pvalue
+    )
+
+
+def test_every_hair_is_a_density():
+    for subject in [*near_field()[::7], *far_field()]:
+        values = subject.density(0.3, np.array([[-1.2], [0.1]]), np.array([0.5, 3.0]), 0.2)
+        assert values.shape == (2, 2)
+        assert np.isfinite(values).all()
+        assert (values >= 0).all()
+
+
+def near_row(**changes):
+    row = {
+        "variance": [0.005] * 4,
+        "weight": 3.0,
+        "lamps": [5.0] * 4,
+        "own": {"variance": [0.0] * 4, "weight": 1.0, "lamps": [5.0] * 4},
+        "promise": 0.006,
+        "promise_low": 0.005,
+        "promise_high": 0.007,
+        "promise_weight": 3.5,
+        "lobes": 3,
+        "seconds": 5.0,
+        "bytes": 100_000,
+        "limits": [],
+    }
+    return row | changes
+
+
+@pytest.mark.parametrize(
+    ("changes", "missed"),
+    [
+        ({}, "none"),
+        ({"variance": [0.05] * 4, "promise": 0.05}, "samples"),
+        ({"weight": 11.0}, "weight"),
+        ({"promise": 0.001}, "promise"),
+        ({"bytes": 300_000}, "size"),
+        ({"seconds": 30.0}, "time"),
+        ({"lamps": [5.4] * 4}, "lamps"),
+    ],
+)
+def test_a_target_that_is_missed_is_named(changes, missed):
+    line = fits_page.page({"chiang 0.3 0.3 0.6": near_row(**changes)}).splitlines()[-2]
+    assert line.split(" | ")[-1].removesuffix(" |") == missed
+
+
+def test_a_far_field_hair_that_one_viewer_sees_badly_misses():
+    row = {k: v for k, v in near_row(variance=[0.002, 0.011]).items() if k != "own"}
+    assert "| V |" in fits_page.page({"karis 0.3": row})

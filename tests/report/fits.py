@@ -96,9 +96,12 @@ def light(theta_i, phi):
 def main() -> int:
     parser = argparse.ArgumentParser(prog="report.fits", description=__doc__.splitlines()[0])
     parser.add_argument("--hair", action="append", help="one hair alone; may be repeated")
+    parser.add_argument(
+        "--data", type=Path, default=DATA, metavar="FILE", help="the numbers (default: %(default)s)"
+    )
     parser.add_argument("--missing", action="store_true", help="only hairs that the last run did not come to")
     args = parser.parse_args()
-    results = json.loads(DATA.read_text()) if DATA.exists() else {}
+    results = json.loads(args.data.read_text()) if args.data.exists() else {}
     for subject in far_field() + near_field():
         if (args.hair and subject.name not in args.hair) or (args.missing and subject.name in results):
             continue
@@ -107,7 +110,7 @@ def main() -> int:
         print(
             subject.name, f"V {np.mean(shown['variance']):.4f}", f"weight {shown['weight']:.1f}", flush=True
         )
-        write_whole(DATA, f"{json.dumps(results, indent=1)}\n".encode())
+        write_whole(args.data, f"{json.dumps(results, indent=1)}\n".encode())
     print(write_whole(PAGES / "fits.md", fits_page.page(results).encode()))
     return 0
 

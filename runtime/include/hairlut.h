@@ -23,7 +23,7 @@
  *
  * Rules for every function on the sampling path (sample, pdf, invert, the _n forms):
  *   - no finite input gives NaN or infinity. u outside [0,1], an offset outside [-1,1] and theta_r outside its range are
- *     clamped; an azimuth of any finite size is reduced modulo 2 pi (beyond 2^24 rad a float holds no azimuth, and the result
+ *     clamped; an azimuth of any finite size is reduced modulo 2 pi (beyond 2^24 rad a float resolves no azimuth, and the result
  *     is merely valid).
  *   - NaN in any argument, or an infinite azimuth, gives a density of 0, with finite angles inside their ranges.
  *     An infinite theta_r, offset or u is clamped like any other value outside its range.
@@ -82,8 +82,8 @@ typedef enum hairlut_warp {
 } hairlut_warp;
 
 typedef enum hairlut_azimuth {
-    HAIRLUT_AZIMUTH_DIFFERENCE = 0, /* the azimuth table holds phi_i - phi_r modulo 2 pi */
-    HAIRLUT_AZIMUTH_SUM = 1         /* it holds phi_i + phi_r modulo 2 pi */
+    HAIRLUT_AZIMUTH_DIFFERENCE = 0, /* the azimuth table contains phi_i - phi_r modulo 2 pi */
+    HAIRLUT_AZIMUTH_SUM = 1         /* it contains phi_i + phi_r modulo 2 pi */
 } hairlut_azimuth;
 
 /* The descriptors below begin with their size, which is the size of the struct as the caller's compiler knows it: a later
@@ -112,7 +112,7 @@ typedef struct hairlut_lobe_desc {
     const char *name;           /* [a-z][a-z0-9_]*, at most 31 characters, no other lobe's */
     const hairlut_table *theta; /* theta_i: its domain lies within [-pi/2, pi/2] */
     const hairlut_table *phi;   /* the relative azimuth: its domain lies within [0, 2 pi]; NULL: uniform */
-    hairlut_azimuth azimuth;    /* what phi holds; ignored where it is NULL */
+    hairlut_azimuth azimuth;    /* what phi contains; ignored where it is NULL */
 } hairlut_lobe_desc;
 
 /* Shares and turns at the nodes of a grid over theta_r and the offset. Both are linear in theta_r and in the asin of the offset
@@ -136,7 +136,7 @@ typedef struct hairlut_model_desc {
     const hairlut_mixture_desc *mixture; /* NULL: equal shares, no turns */
 } hairlut_model_desc;
 
-/* Memory for a model. A zeroed struct, or NULL where one is asked for, means malloc and free. `allocate` returns memory
+/* Memory for a model. A zeroed struct, or NULL in its place, means malloc and free. `allocate` returns memory
  * aligned for any type, or NULL; `release` gets only what `allocate` returned. Both are called only inside
  * hairlut_model_create, hairlut_load and hairlut_free, from the calling thread. */
 typedef struct hairlut_allocator {
@@ -147,7 +147,7 @@ typedef struct hairlut_allocator {
 
 enum { HAIRLUT_MESSAGE_SIZE = 512 };
 
-/* Checks a table that did not come from this project's tools. HAIRLUT_OK, or an error; `message`, if not NULL, holds
+/* Checks a table that did not come from this project's tools. HAIRLUT_OK, or an error; `message`, if not NULL, has room for
  * HAIRLUT_MESSAGE_SIZE bytes and receives what is wrong, where, and what was expected. Slopes must be 1e-9 to 1e12 rad per unit
  * of u. Reads width*height pairs of floats. */
 HAIRLUT_API hairlut_result hairlut_validate(const hairlut_table *table, char *message);
@@ -273,7 +273,7 @@ HAIRLUT_API void hairlut_pdf_multiple_n(const hairlut_model *model, size_t n, co
 
 /* Loads the model of a directory: mixture.exr and the tables that it names (luts/FORMAT.md says what is checked), or the three
  * tables of format 1: lobes "direct" and "multiple" of equal shares.
- * On error *out is NULL, nothing stays allocated, and `message`, if not NULL, holds HAIRLUT_MESSAGE_SIZE bytes and
+ * On error *out is NULL, nothing stays allocated, and `message`, if not NULL, has room for HAIRLUT_MESSAGE_SIZE bytes and
  * receives the file, the attribute, what was expected and what to do. Free with hairlut_free.
  * OpenEXR takes its own temporary memory from malloc. Any number of threads may load at once. */
 HAIRLUT_EXR_API hairlut_result hairlut_load(const char *directory, hairlut_model **out);

@@ -19,11 +19,11 @@ static inline void hairlut_malloc_release(void *user, void *memory)
     free(memory);
 }
 
-/* `asked` may be NULL or zeroed; half a pair of hooks is an error. */
-static inline hairlut_result hairlut_choose_allocator(const hairlut_allocator *asked, hairlut_allocator *chosen, char *message)
+/* `requested` may be NULL or zeroed; half a pair of hooks is an error. */
+static inline hairlut_result hairlut_choose_allocator(const hairlut_allocator *requested, hairlut_allocator *chosen, char *message)
 {
     const hairlut_allocator standard = {hairlut_malloc, hairlut_malloc_release, NULL};
-    *chosen = asked && (asked->allocate || asked->release) ? *asked : standard;
+    *chosen = requested && (requested->allocate || requested->release) ? *requested : standard;
     if (!chosen->allocate || !chosen->release)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "allocator: expected both allocate and release, or neither");
     return HAIRLUT_OK;

@@ -60,7 +60,7 @@ static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float 
     }
 }
 
-/* hairlut_known, of what a sample or a density is asked for */
+/* hairlut_known, for the arguments of a sample or a density */
 static inline mask known(real theta_r, real phi_r, real a, real b)
 {
     return both(numbers(theta_r, a), numbers(b, sub(phi_r, phi_r)));
@@ -78,7 +78,7 @@ static inline real relative_azimuth(int azimuth, real r, real i)
     return wrap_up(azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
 }
 
-/* Finite, where an azimuth is asked for. */
+/* 1 where an azimuth is finite, which matters where it is read. */
 static inline mask is_finite(real x)
 {
     return at_least(all(FLT_MAX), magnitude(x));
@@ -114,7 +114,7 @@ static inline void pdf_lobe_block(const hairlut_model *model, int lobe, size_t n
     const hairlut_lobe *l = &model->lobes[lobe];
     float azimuth[BLOCK], valid[BLOCK], pdf[BLOCK];
     size_t first = 0;
-    do { /* n is not 0: gcc is told that all of azimuth is set */
+    do { /* n is not 0, and so gcc sees that all of azimuth is set */
         const real phi_r = load(in[1] + first), phi_i = load(in[3] + first);
         const mask is_known = both(known(load(in[0] + first), phi_r, load(in[2] + first), phi_i), is_finite(phi_i));
         store(valid + first, choose(is_known, all(1.0f), all(0.0f)));

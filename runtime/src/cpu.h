@@ -10,7 +10,7 @@
 
 typedef enum hairlut_cpu { HAIRLUT_CPU_PLAIN, HAIRLUT_CPU_AVX2 } hairlut_cpu;
 
-/* A build for one known processor defines HAIRLUT_CPU as one of these: nothing is asked then. */
+/* A build for one known processor defines HAIRLUT_CPU as one of these: then the processor is not queried. */
 
 #ifdef HAIRLUT_X86
 #ifdef _MSC_VER

@@ -39,7 +39,7 @@ static inline int hairlut_read_number(const char **text, const char *end, double
             continue;
         }
         ++digits;
-        if (mantissa < UINT64_C(100000000000000000)) { /* 18 digits are kept, more than a double holds */
+        if (mantissa < UINT64_C(100000000000000000)) { /* 18 digits are kept, more than a double has */
             mantissa = 10 * mantissa + (uint64_t)(*p - '0');
             exponent -= point;
         } else {

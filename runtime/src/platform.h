@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What the sources ask of the compiler. Bits that are equal on every processor, and NaN that is noticed, need IEEE arithmetic
- * in the type that is written. CMake sets the flags; whoever compiles by hand is told here. */
+/* What the sources require of the compiler. Bits that are equal on every processor, and tests for NaN, need IEEE arithmetic in
+ * the type that is written. CMake sets the flags; a compilation by hand without them ends with an error here. */
 #ifndef HAIRLUT_PLATFORM_H
 #define HAIRLUT_PLATFORM_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The knots of the u axis in double precision (luts/FORMAT.md, "Knots"); axis.h finds the cell of a u in single precision. */
+/* The knots of the u axis in double precision (luts/FORMAT.md, "Knots"); axis.h computes the cell of a u in single precision. */
 #ifndef HAIRLUT_WARP_H
 #define HAIRLUT_WARP_H
 

@@ -78,7 +78,7 @@ static void fill_inputs(size_t n)
     }
 }
 
-/* Densities are asked for directions that were drawn, and for hard ones. */
+/* Densities of directions that were sampled, and of hard ones. */
 static void make_directions(size_t n, const float *theta_i, const float *phi_i)
 {
     for (size_t i = 0; i < n; ++i) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Loads each directory named with every allocation failed in turn, then with every read failed in turn, in each way that a read can
- * fail: an error, an early end, half of what was asked for. OpenEXR's own memory and reads are among them. A load either succeeds or
+ * fail: an error, an early end, half of what was requested. OpenEXR's own memory and reads are among them. A load either succeeds or
  * says what is wrong, and leaves no memory behind. glibc: the functions below take the places of those in its library. */
 #define _GNU_SOURCE
 #include <dlfcn.h>

@@ -34,7 +34,7 @@ inline Pair normal(float u, float v)
     return {radius * cosf(turn), radius * sinf(turn)};
 }
 
-inline bool holds(const Row &row, float x)
+inline bool contains(const Row &row, float x)
 {
     return x >= row.low && x <= row.high;
 }
@@ -46,7 +46,7 @@ template <class Rows> struct BoxMuller : Hair<Rows, Gaussian<Libm>> {
     {
         const Row theta = Rows::template row<direct_theta>(theta_r), phi = Rows::template row<direct_phi>(theta_r);
         Pair z = normal(u_theta, u_phi);
-        while (!(holds(theta, theta.mean + theta.width * z.first) && holds(phi, phi.mean + phi.width * z.second))) {
+        while (!(contains(theta, theta.mean + theta.width * z.first) && contains(phi, phi.mean + phi.width * z.second))) {
             u_theta = next(u_theta);
             u_phi = next(u_phi + 1.0f);
             z = normal(u_theta, u_phi);
@@ -60,7 +60,7 @@ template <class Rows> struct BoxMuller : Hair<Rows, Gaussian<Libm>> {
         const Row theta = Rows::template row<multiple_theta>(theta_r);
         const float phi_i = 2.0f * pi * u_phi - pi;
         float z = normal(u_theta, u_phi = next(u_phi)).first;
-        while (!holds(theta, theta.mean + theta.width * z)) {
+        while (!contains(theta, theta.mean + theta.width * z)) {
             u_theta = next(u_theta);
             u_phi = next(u_phi + 1.0f);
             z = normal(u_theta, u_phi).first;

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from engine import vectors
-from engine.chisquare import interaction, p_value
+from engine.chisquare import cell_masses, interaction, p_value, sample_angles
 from engine.test_images import ONE_SCATTERING, PATH, SIGMAS, batch_means, deviation
 from engine.test_plugin import VIEWERS
 
@@ -22,7 +22,7 @@ from report.hairscene.shares import with_shares
 
 MODELS = ("printed", "fitted", "brown")
 CASES = [(model, viewer) for model in MODELS for viewer in VIEWERS]
-COUNT = 700_000
+COUNT, FEWER = 700_000, 30_000
 ROWS, COLUMNS = 10, 20
 SIGNIFICANCE = 0.01 / len(CASES)
 PLACES = 20_000
@@ -175,6 +175,20 @@ def test_chi_square_rejects_a_density_off_by_two_percent(llvm, drawn, model, vie
     assert p_value(llvm, angles, 1.02 * masses, COUNT) < SIGNIFICANCE
 
 
+@pytest.mark.parametrize("viewer", [(30, -45), (-85, 20)], ids=str)
+def test_chi_square_accepts_what_it_draws_in_scalar(scalar, viewer):
+    """Fewer draws, against the density of the C++ plugin: Python's own numbers are slow."""
+    bsdf, plugin = (
+        scalar.load_dict({"type": kind, "model": "brown", "nested": brown_hair()})
+        for kind in ("hairlut_drjit", "hairlut")
+    )
+    si, context = interaction(scalar, *map(math.radians, viewer)), scalar.BSDFContext()
+    masses = cell_masses(scalar, lambda wo: plugin.pdf(context, si, wo), ROWS, COLUMNS)
+    angles = sample_angles(scalar, bsdf, si, FEWER, seed=19)
+    assert p_value(scalar, angles, masses, FEWER) > SIGNIFICANCE
+    assert p_value(scalar, angles, 1.08 * masses, FEWER) < SIGNIFICANCE
+
+
 # ---- weights, bias, gradients
 
 
@@ -290,6 +304,14 @@ def reference(mi, strands):
 def test_mean_image_is_the_reference(reference, llvm, strands, parameters):
     bsdf = {"type": "hairlut", "nested": brown_hair(), **parameters}
     sigmas, error = deviation(batch_means(llvm, scene(llvm, strands, bsdf), 100, spp=192), reference)
+    assert error < 0.02
+    assert abs(sigmas) < SIGMAS
+
+
+def test_mean_image_is_the_reference_in_scalar(reference, scalar, strands):
+    bsdf = {"type": "hairlut_drjit", "model": "brown", "nested": brown_hair()}
+    means = batch_means(scalar, scene(scalar, strands, bsdf), 700, batches=6, spp=8)
+    sigmas, error = deviation(means, reference)
     assert error < 0.02
     assert abs(sigmas) < SIGMAS
 

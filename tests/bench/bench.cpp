@@ -2,7 +2,10 @@
 // Times the calls of hairlut.h and those of its rivals in one run. Names: MODEL/CALL/WHO/HOW (NOTES.md); every benchmark has the
 // counter "ns", the time of one sample.
 #include <benchmark/benchmark.h>
+
+#ifdef __GLIBC__
 #include <gnu/libc-version.h>
+#endif
 
 #include <cstddef>
 #include <cstdio>
@@ -185,7 +188,9 @@ int main(int argc, char **argv)
     const std::string directory = luts_argument(argc, argv);
     benchmark::AddCustomContext("kernels", hairlut_batch_widest()->name);
     benchmark::AddCustomContext("compiler", "gcc " __VERSION__);
+#ifdef __GLIBC__
     benchmark::AddCustomContext("libm", std::string("glibc ") + gnu_get_libc_version());
+#endif
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv))
         return 2;

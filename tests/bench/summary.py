@@ -23,7 +23,12 @@ RIVALS = {
 }
 HOW = {"one": "one at a time", "arrays": "over arrays"}
 FORMS = {"one": ("one", "native"), "arrays": ARRAYS}
-FLAGS = {"native": ", fastest flags", "arrays256": ", 256 bits", "arrays512": ", 512 bits"}
+FLAGS = {
+    "native": ", fastest flags",
+    "arrays128": ", 128 bits",
+    "arrays256": ", 256 bits",
+    "arrays512": ", 512 bits",
+}
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ write_basic_package_version_file(hairlut-config-version.cmake COMPATIBILITY Same
 install(FILES ${PROJECT_BINARY_DIR}/hairlut-config.cmake ${PROJECT_BINARY_DIR}/hairlut-config-version.cmake
     DESTINATION ${package_directory})
 
-install(DIRECTORY shaders DESTINATION ${HAIRLUT_DATA_DIR})
+install(DIRECTORY shaders DESTINATION ${HAIRLUT_DATA_DIR} PATTERN source EXCLUDE) # what the shaders are assembled from
 if(EXISTS ${PROJECT_SOURCE_DIR}/../luts/FORMAT.md) # runtime/ may be taken alone
     install(DIRECTORY ../luts DESTINATION ${HAIRLUT_DATA_DIR} FILES_MATCHING PATTERN "*.exr" PATTERN "FORMAT.md")
     install(FILES ../LICENSE DESTINATION ${HAIRLUT_DATA_DIR})

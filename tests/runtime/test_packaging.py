@@ -155,7 +155,7 @@ def test_tables_shaders_format_and_license_are_installed(prefix):
     data = prefix / "share" / "hairlut"
     installed = {str(file.relative_to(data)) for file in data.rglob("*") if file.is_file()}
     shipped = {str(file.relative_to(ROOT)) for file in (ROOT / "luts").rglob("*.exr")}
-    shaders = {str(file.relative_to(RUNTIME)) for file in (RUNTIME / "shaders").iterdir()}
+    shaders = {str(file.relative_to(RUNTIME)) for file in (RUNTIME / "shaders").glob("*.*")}
     assert installed == shipped | shaders | {"luts/FORMAT.md", "LICENSE"}
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # An overlay port, from a checkout of this repository: vcpkg install hairlut --overlay-ports=runtime/packaging/vcpkg
 get_filename_component(repository "${CURRENT_PORT_DIR}/../../../.." ABSOLUTE)
 vcpkg_check_features(OUT_FEATURE_OPTIONS features FEATURES exr HAIRLUT_EXR)

@@ -98,7 +98,7 @@ def run(args: argparse.Namespace) -> int:
         def report(stage: str, share: float) -> None:
             progress.update(task, description=stage, completed=share)
 
-        model, text, told, doubts = _fitted(args, name, report)
+        model, text, figures, doubts = _fitted(args, name, report)
     for doubt in doubts:
         print(f"hairlut: {args.data}: warning: {doubt}", file=sys.stderr)
     from ..exr import write_model
@@ -108,7 +108,7 @@ def run(args: argparse.Namespace) -> int:
     size = sum(path.stat().st_size for path in paths)
     if args.json:
         about = {"model": str(args.out / name), "bytes": size, "seconds": seconds}
-        print(json.dumps({**about, **told}, indent=1))
+        print(json.dumps({**about, **figures}, indent=1))
         return OK
     print(text)
     print(f"\n{args.out / name}: {len(paths)} textures, {size / 1024:.0f} KB, in {seconds:.1f} s")
@@ -130,8 +130,8 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
             raise HairlutError("--plot: draws have no density to plot: leave it out")
         report("cross-validating", 0.0)
         found = drawn.fit(data, name, args.lobes)
-        text, told = says.drawn_text(args.data, data, found), says.drawn_data(data, found)
-        return says.with_error(found), text, told, []
+        text, figures = says.drawn_text(args.data, data, found), says.drawn_data(data, found)
+        return says.with_error(found), text, figures, []
     from ..fit import grid
 
     return _of_hair(grid.of_grid(data, args.measure == "solid-angle"), data, args, name, report)
@@ -143,9 +143,9 @@ def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: R
     found = refine.fit(given, name, args.tolerance, args.lobes, args.budget, report)
     if args.plot:
         _plot(given, found, args.plot, name)
-    told = {"data": str(what), **says.data(found, args.tolerance)}
+    figures = {"data": str(what), **says.data(found, args.tolerance)}
     text = f"{args.data}: {what}\n{says.text(found, args.tolerance)}"
-    return says.with_errors(found), text, told, doubts.doubts(given, found.promised)
+    return says.with_errors(found), text, figures, doubts.doubts(given, found.promised)
 
 
 def _plot(given, found, path: Path, name: str) -> None:

@@ -4,7 +4,7 @@
 Along theta_i and around the fibre the logarithm of the values is a cubic between the points: exact for
 exponential tails, and close for Gaussians. Between two theta_r the values at the same angle from the mirror
 direction are blended, so that a highlight moves with it. Between two offsets nothing is known: a highlight
-may stand anywhere. There a fit says what it loses at offsets that it was not told of, whose neighbours are
+may be anywhere. The loss there is measured at offsets that were left out of the fit, whose neighbours are
 twice as far away."""
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A hair to be fitted: its light as a density, and what can be told of it beforehand."""
+"""A hair to be fitted: its light as a density, its symmetry and its ranges."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 """Highlights in the azimuths of products: each moves around the fibre in its own way.
 
 Where one highlight's inclination is nearly a mixture of two others', the products of factor.py have parts of
-several highlights each. Those are told apart by how they move over the offset: each product's azimuths are
+several highlights each. Those are separated by how they move over the offset: each product's azimuths are
 peeled, highlight by highlight, and parts of different products that move together are one lobe.
 """
 

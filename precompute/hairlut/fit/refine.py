@@ -39,7 +39,7 @@ WEIGHT_PARTS = 5.0  # what a weight that is too large counts, or a viewer whose 
 LARGEST_STEP = 2.0
 VIEWERS, OFFSETS = 24, 8
 REPEATS = 4
-ROWS = 9  # on and between which losses are told apart
+ROWS = 9  # on and between which losses are distinguished
 
 
 @dataclass(frozen=True)

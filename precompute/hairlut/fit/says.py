@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a fit tells: as text for a person, as plain data for a script, and in a texture's header."""
+"""The result of a fit: as text for a person, as plain data for a script, and in a texture's header."""
 
 from __future__ import annotations
 
@@ -81,10 +81,10 @@ def data(found: Fitted, tolerance: float) -> dict:
 
 def text(found: Fitted, tolerance: float) -> str:
     """The fit for a terminal."""
-    told, axes = promise(found), found.axes
+    errors, axes = promise(found), found.axes
     offsets = f", {axes.offset} offsets" if axes.offset > 1 else ""
     lines = [
-        f"{len(found.model.lobes)} lobes from {axes.theta_r} theta_r{offsets}, {axes.theta_i} x {axes.phi} "
+        f"{_lobes(len(found.model.lobes))} from {axes.theta_r} theta_r{offsets}, {axes.theta_i} x {axes.phi} "
         "cells of theta_i and phi",
         "",
         "relative variance of drawing this hair, the offset known (0 is perfect, 1 costs twice the samples),",
@@ -98,15 +98,20 @@ def text(found: Fitted, tolerance: float) -> str:
     lines += [
         f"{t:14.3g} {v:10.4f} {w:8.2f}" for t, v, w in zip(np.degrees(middles), variance, weight, strict=True)
     ]
-    interval = f" (95 %: {told.low:.4f} to {told.high:.4f})"
-    lines += [f"{'all':>14} {told.relative_variance:10.4f} {told.largest_weight:8.2f}{interval}", ""]
+    interval = f" (95 %: {errors.low:.4f} to {errors.high:.4f})"
+    lines += [f"{'all':>14} {errors.relative_variance:10.4f} {errors.largest_weight:8.2f}{interval}", ""]
     return "\n".join([*lines, _verdict(found, tolerance)])
+
+
+def _lobes(count: int) -> str:
+    return f"{count} lobe{'s' if count > 1 else ''}"
 
 
 def _verdict(found: Fitted, tolerance: float) -> str:
     what = limits(found, tolerance)
     if not what:
-        return f"meets the tolerance: within {tolerance:g} of what {len(found.model.lobes)} lobes can reach"
+        best = _lobes(len(found.model.lobes))
+        return f"meets the tolerance: within {tolerance:g} of what {best} can reach"
     return f"stops short of the tolerance {tolerance:g}; what limits it: {', '.join(what)}"
 
 
@@ -121,11 +126,10 @@ def with_errors(found: Fitted) -> BakedModel:
 def drawn_text(path: Path, data: Draws, found: Drawn) -> str:
     """The fit of draws for a terminal."""
     low, high = _interval(found)
-    lobes = len(found.model.lobes)
     return "\n".join(
         [
             f"{path}: {data}",
-            f"{lobes} lobe{'s' if lobes > 1 else ''}: one more gains nothing beyond the noise of the draws",
+            f"{_lobes(len(found.model.lobes))}: one more gains nothing beyond the noise of the draws",
             "",
             "relative variance of drawing this hair (0 is perfect, 1 costs twice the samples), measured on",
             "draws left out",

@@ -192,7 +192,7 @@ static inline void fetch_searches(const hairlut_axis *axis, size_t n, searches *
     }
 }
 
-/* hairlut_axis_sample, not moved into the domain, of samples s .. s+LANES-1 that were placed and fetched */
+/* hairlut_draw_two, of an axis, of samples s .. s+LANES-1 that were placed and fetched */
 static inline real draw(const draws *q, size_t s, real *slope)
 {
     const real along = load(q->m + s), w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s);
@@ -227,7 +227,7 @@ static inline void end_search(const hairlut_axis *axis, size_t n, searches *q)
     fetch_searches(axis, n, q);
 }
 
-/* hairlut_axis_inverse from the blended cell on: bend and root of directions s .. s+LANES-1 */
+/* hairlut_invert_four, of an axis: bend and root of directions s .. s+LANES-1 */
 static inline real inverse(const searches *q, size_t s, real *root_of)
 {
     const real w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), from = load(q->x + s), to = sub(w, from);
@@ -235,10 +235,9 @@ static inline real inverse(const searches *q, size_t s, real *root_of)
     const real balance = sub(mul(d0, to), mul(d1, from));
     *root_of = root(add(mul(balance, balance), mul(all(4.0f), mul(wx, wz))));
     const real sum = add(*root_of, magnitude(balance));
-    const mask rising = at_least(balance, all(0.0f));
-    const real a = choose(rising, mul(all(2.0f), wx), sum), b = choose(rising, sum, mul(all(2.0f), wz));
-    const real unit = over(all(1.0f), add(a, b)), xi = mul(a, unit), rest = mul(b, unit);
-    const real bend = add(mul(w, add(mul(xi, xi), mul(rest, rest))), mul(add(d0, d1), mul(xi, rest)));
+    const real side = mul(all(2.0f), by_sign(balance, wz, wx)), unit = over(all(1.0f), add(side, sum));
+    const real part = mul(side, unit), rest = mul(sum, unit);
+    const real bend = add(mul(w, add(mul(part, part), mul(rest, rest))), mul(add(d0, d1), mul(part, rest)));
     return mul(load(q->width + s), bend);
 }
 

@@ -3,35 +3,48 @@
 #include "hair.h"
 
 /* phi_i of what lobe k drew. */
-static float incident_azimuth(const hairlut_model *model, const hairlut_mix *mix, int k, float phi_r, float x)
+static float incident_azimuth(const hairlut_model *model, const hairlut_mix *mix, int k, float r, float x)
 {
     const hairlut_lobe *lobe = &model->lobes[k];
     if (lobe->uniform)
         return x;
-    return hairlut_turned_incident(lobe->azimuth, phi_r, x, model->mixture.turned ? mix->turn[k] : 0.0f, mix->side);
+    return hairlut_turned_incident(lobe->azimuth, r, x, model->mixture.turned ? mix->turn[k] : 0.0f, mix->side);
 }
 
-static float lobe_azimuth(const hairlut_model *model, const hairlut_mix *mix, int k, float phi_r, float phi_i)
+/* What lobe k's azimuth table is asked for; r and i are phi_r and phi_i in [-pi, pi). */
+static float lobe_azimuth(const hairlut_model *model, const hairlut_mix *mix, int k, float r, float i)
 {
-    const hairlut_lobe *lobe = &model->lobes[k];
-    if (lobe->uniform)
-        return 0.0f;
-    return hairlut_turned_relative(lobe->azimuth, phi_r, phi_i, model->mixture.turned ? mix->turn[k] : 0.0f, mix->side);
+    const hairlut_mixture *m = &model->mixture;
+    const float relative = hairlut_relative_azimuth(model->lobes[k].azimuth, r, i);
+    return m->turned || m->mirrored ? hairlut_turned_relative(relative, m->turned ? mix->turn[k] : 0.0f, mix->side) : relative;
 }
 
-/* The sum of share / sum * density. Lobe `drawn`, if there is one, has the density `known`. All searches begin before any ends. */
-static float mixed(const hairlut_model *model, const hairlut_mix *mix, float theta_r, float phi_r, float theta_i, float phi_i,
-                   int drawn, float known)
+/* The sum of weight * density. Lobe `drawn`, if there is one, has the density `known`. */
+static float mixed(const hairlut_model *model, const hairlut_mix *mix, float theta_r, float r, float theta_i, float i, int drawn,
+                   float known)
 {
-    hairlut_lobe_search searches[HAIRLUT_MAX_LOBES];
-    const float unit = 1.0f / mix->sum;
-    float pdf = 0.0f;
-    for (int k = 0; k < model->lobe_count; ++k)
-        if (k != drawn && mix->share[k] > 0.0f)
-            searches[k] = hairlut_lobe_begin_search(&model->lobes[k], theta_r, theta_i, lobe_azimuth(model, mix, k, phi_r, phi_i));
-    for (int k = 0; k < model->lobe_count; ++k)
-        if (mix->share[k] > 0.0f)
-            pdf += mix->share[k] * unit * (k == drawn ? known : hairlut_lobe_end_search(&model->lobes[k], &searches[k]));
+    float contains[HAIRLUT_MAX_LOBES], root[2 * HAIRLUT_MAX_LOBES], bend[2 * HAIRLUT_MAX_LOBES], pdf = 0.0f;
+    hairlut_row row = {0, 0.0f};
+    hairlut_searches searches;
+    searches.count = 0;
+    for (int k = 0, grid = -1; k < model->lobe_count; ++k) {
+        const hairlut_lobe *lobe = &model->lobes[k];
+        if (k == drawn || !(mix->weight[k] > 0.0f))
+            continue;
+        if (lobe->theta.grid != grid)
+            row = hairlut_axis_row(&lobe->theta, theta_r);
+        grid = lobe->theta.grid;
+        const float phi = lobe->uniform ? 0.0f : lobe_azimuth(model, mix, k, r, i);
+        contains[k] = hairlut_lobe_begin_search(lobe, theta_r, row, theta_i, phi, &searches);
+    }
+    hairlut_end_searches(&searches, root, bend);
+    for (int k = 0, a = 0; k < model->lobe_count; ++k) {
+        const hairlut_lobe *lobe = &model->lobes[k];
+        if (!(mix->weight[k] > 0.0f))
+            continue;
+        pdf += mix->weight[k] * (k == drawn ? known : hairlut_lobe_density(lobe, contains[k], root + a, bend + a));
+        a += k == drawn ? 0 : lobe->uniform ? 1 : 2;
+    }
     return pdf;
 }
 
@@ -44,9 +57,9 @@ hairlut_sample hairlut_sample_hair(const hairlut_model *model, const float *shar
     const hairlut_lobe *lobe = &model->lobes[k];
     const hairlut_drawn drawn = hairlut_lobe_draw(lobe, theta_r, u_theta, u_phi);
     const float theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta);
-    const float phi_i = incident_azimuth(model, &mix, k, phi_r, drawn.phi);
+    const float r = hairlut_wrap(phi_r, -hairlut_pi), phi_i = incident_azimuth(model, &mix, k, r, drawn.phi);
     const int valid = hairlut_known(theta_r, phi_r, u_theta, u_phi) && !isunordered(offset, u_lobe) && mix.sum > 0.0f;
-    return hairlut_finish(theta_i, phi_i, valid ? mixed(model, &mix, theta_r, phi_r, theta_i, phi_i, k, drawn.pdf) : 0.0f);
+    return hairlut_finish(theta_i, phi_i, valid ? mixed(model, &mix, theta_r, r, theta_i, phi_i, k, drawn.pdf) : 0.0f);
 }
 
 float hairlut_pdf_hair(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset, float theta_i,
@@ -56,5 +69,5 @@ float hairlut_pdf_hair(const hairlut_model *model, const float *shares, float th
     hairlut_mixture_at(model, shares, 1, theta_r, offset, &mix);
     if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i) || offset != offset || !(mix.sum > 0.0f))
         return 0.0f;
-    return mixed(model, &mix, theta_r, phi_r, theta_i, phi_i, -1, 0.0f);
+    return mixed(model, &mix, theta_r, hairlut_wrap(phi_r, -hairlut_pi), theta_i, hairlut_wrap(phi_i, -hairlut_pi), -1, 0.0f);
 }

@@ -93,6 +93,7 @@ typedef struct hairlut_axis {
     int height;
     int stride; /* floats from one row to the next */
     int step;   /* cells of a block */
+    int grid;   /* the same number in all axes of a model whose rows are of the same theta_r */
 } hairlut_axis;
 
 /* The bits of a float shifted right by two are those of F / 2^96, F as in warp.h. */
@@ -109,7 +110,8 @@ typedef struct hairlut_lobe {
 
 /* The grid of a mixture. A node of an axis is two floats: its value, and 1 / (the next one's - its own); 0 at the last. At the
  * grid's node (j, o), lobe k has HAIRLUT_CORNER floats from ((j*columns + o)*lobe_count + k)*HAIRLUT_CORNER on: its share, where
- * those of a node sum to 1; its turn in [-pi, pi); and by how much that changes, along the shorter arc, to node (j+1, o). */
+ * those of a node sum to 1; its turn in [-pi, pi); by how much that changes, along the shorter arc, to node (j+1, o); and its share
+ * over the sum of the floats that the shares are. */
 enum { HAIRLUT_CORNER = 4 };
 typedef struct hairlut_mixture {
     const float *theta_r; /* the nodes of theta_r */

@@ -7,6 +7,11 @@ static const hairlut_lobe *lobe_of(const hairlut_model *model, int lobe)
     return lobe >= 0 && lobe < model->lobe_count ? &model->lobes[lobe] : NULL;
 }
 
+static float relative_azimuth(const hairlut_lobe *lobe, float phi_r, float phi_i)
+{
+    return hairlut_relative_azimuth(lobe->azimuth, hairlut_wrap(phi_r, -hairlut_pi), hairlut_wrap(phi_i, -hairlut_pi));
+}
+
 hairlut_sample hairlut_sample_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float u_theta, float u_phi)
 {
     const hairlut_lobe *l = lobe_of(model, lobe);
@@ -27,9 +32,13 @@ float hairlut_pdf_lobe(const hairlut_model *model, int lobe, float theta_r, floa
     const hairlut_lobe *l = lobe_of(model, lobe);
     if (!l || !hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i))
         return 0.0f;
-    const float phi = l->uniform ? 0.0f : hairlut_relative_azimuth(l->azimuth, phi_r, phi_i);
-    const hairlut_lobe_search search = hairlut_lobe_begin_search(l, theta_r, theta_i, phi);
-    return hairlut_lobe_end_search(l, &search);
+    const float phi = l->uniform ? 0.0f : relative_azimuth(l, phi_r, phi_i);
+    hairlut_searches searches;
+    float root[4], bend[4];
+    searches.count = 0;
+    const float contains = hairlut_lobe_begin_search(l, theta_r, hairlut_axis_row(&l->theta, theta_r), theta_i, phi, &searches);
+    hairlut_end_searches(&searches, root, bend);
+    return hairlut_lobe_density(l, contains, root, bend);
 }
 
 void hairlut_invert_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float theta_i, float phi_i, float u[2])
@@ -42,7 +51,7 @@ void hairlut_invert_lobe(const hairlut_model *model, int lobe, float theta_r, fl
     if (l->uniform)
         u[1] = (hairlut_wrap(phi_i, -hairlut_pi) + hairlut_pi) * hairlut_inverse_two_pi;
     else
-        u[1] = hairlut_axis_invert(&l->phi, theta_r, phi_i == phi_i ? hairlut_relative_azimuth(l->azimuth, phi_r, phi_i) : 0.0f);
+        u[1] = hairlut_axis_invert(&l->phi, theta_r, phi_i == phi_i ? relative_azimuth(l, phi_r, phi_i) : 0.0f);
 }
 
 hairlut_sample hairlut_sample_direct(const hairlut_model *model, float theta_r, float phi_r, float u_theta, float u_phi)

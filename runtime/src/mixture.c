@@ -94,7 +94,16 @@ static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lo
     stored[0] = (float)((desc->share ? (double)desc->share[place(desc, k, j, o)] : 1.0) / sum);
     stored[1] = hairlut_wrap((float)shorter_arc(turn), -hairlut_pi);
     stored[2] = (float)shorter_arc(next - turn);
-    stored[3] = 0.0f;
+}
+
+/* The weights of a node: hairlut_mixture_at's where there is no other node. */
+static void store_weights(float *node, int lobe_count)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < lobe_count; ++k)
+        sum += node[HAIRLUT_CORNER * k];
+    for (int k = 0; k < lobe_count; ++k)
+        node[HAIRLUT_CORNER * k + 3] = node[HAIRLUT_CORNER * k] * (1.0f / sum);
 }
 
 static void store_nodes(float *stored, const float *nodes, int count, int is_offset)
@@ -124,9 +133,11 @@ void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc 
     store_nodes(theta_r, d->theta_r, d->theta_r_count, 0);
     store_nodes(arc, d->offset, d->offset_count, 1);
     for (int j = 0; j < d->theta_r_count; ++j)
-        for (int o = 0; o < d->offset_count; ++o)
-            for (int k = 0; k < lobe_count; ++k, corner += HAIRLUT_CORNER) {
-                store_corner(corner, d, lobe_count, k, j, o);
-                mixture->turned |= corner[1] != 0.0f;
+        for (int o = 0; o < d->offset_count; ++o, corner += HAIRLUT_CORNER * lobe_count) {
+            for (int k = 0; k < lobe_count; ++k) {
+                store_corner(corner + HAIRLUT_CORNER * k, d, lobe_count, k, j, o);
+                mixture->turned |= corner[HAIRLUT_CORNER * k + 1] != 0.0f;
             }
+            store_weights(corner, lobe_count);
+        }
 }

@@ -14,10 +14,11 @@ static const float hairlut_large_share = 1.26765060e30f /* 2^100 */, hairlut_sma
 static const float hairlut_shrink = 9.09494702e-13f /* 2^-40 */, hairlut_grow = 1.23794004e27f; /* 2^90 */
 
 typedef struct hairlut_mix {
-    float share[HAIRLUT_MAX_LOBES]; /* in a unit of their own */
-    float turn[HAIRLUT_MAX_LOBES];  /* [-pi, pi); not set where no lobe of the model is turned */
-    float sum;                      /* of the shares; 0 where no density can be given */
-    float side;                     /* -1 where the azimuth is mirrored, else 1 */
+    float share[HAIRLUT_MAX_LOBES];  /* in a unit of their own */
+    float weight[HAIRLUT_MAX_LOBES]; /* share / sum */
+    float turn[HAIRLUT_MAX_LOBES];   /* [-pi, pi); not set where no lobe of the model is turned */
+    float sum;                       /* of the shares; 0 where no density can be given */
+    float side;                      /* -1 where the azimuth is mirrored, else 1 */
 } hairlut_mix;
 
 /* Where x lies among `count` nodes of an axis. NaN, and what is below the first, gives the first. */
@@ -70,18 +71,15 @@ static inline float hairlut_blend_turns(const float *low, const float *high, flo
     return hairlut_wrap(from + s * hairlut_wrap(to - from, -hairlut_pi), -hairlut_pi);
 }
 
-/* shares: the caller's, as hairlut_mixture_given takes them, or NULL. A NaN offset is as good as -1: what asks gives density 0. */
-HAIRLUT_INLINE void hairlut_mixture_at(const hairlut_model *model, const float *shares, size_t stride, float theta_r, float offset,
-                                       hairlut_mix *mix)
+/* Between nodes; a NaN offset is as good as -1: the density is 0. */
+static inline void hairlut_mixture_between(const hairlut_model *model, float theta_r, float h, hairlut_mix *mix)
 {
     const hairlut_mixture *m = &model->mixture;
     const int count = model->lobe_count;
-    const float h = hairlut_clamp(offset, -1.0f, 1.0f), arc = hairlut_asin(m->mirrored ? fabsf(h) : h);
     const hairlut_row row = hairlut_mixture_row(m->theta_r, m->rows, theta_r);
-    const hairlut_row column = hairlut_mixture_row(m->arc, m->columns, arc);
+    const hairlut_row column = hairlut_mixture_row(m->arc, m->columns, hairlut_asin(m->mirrored ? fabsf(h) : h));
     const int node = HAIRLUT_CORNER * count, above = m->rows > 1 ? node * m->columns : 0, beside = m->columns > 1 ? node : 0;
     const float *corner = m->corners + (ptrdiff_t)row.j * above + (ptrdiff_t)column.j * beside;
-    mix->side = m->mirrored && h < 0.0f ? -1.0f : 1.0f;
     mix->sum = 0.0f;
     for (int k = 0; k < count; ++k, corner += HAIRLUT_CORNER) {
         mix->share[k] = hairlut_blend_shares(corner, corner + above, corner + beside, corner + above + beside, row.t, column.t);
@@ -89,8 +87,38 @@ HAIRLUT_INLINE void hairlut_mixture_at(const hairlut_model *model, const float *
         if (m->turned)
             mix->turn[k] = hairlut_blend_turns(corner, corner + beside, row.t, column.t);
     }
+}
+
+/* The same of the only node: what blending it with itself gives. */
+static inline void hairlut_mixture_alone(const hairlut_model *model, hairlut_mix *mix)
+{
+    const float *corner = model->mixture.corners;
+    mix->sum = 0.0f;
+    for (int k = 0; k < model->lobe_count; ++k, corner += HAIRLUT_CORNER) {
+        mix->sum += mix->share[k] = corner[0];
+        mix->turn[k] = corner[1];
+        mix->weight[k] = corner[3];
+    }
+}
+
+/* shares: the caller's, as hairlut_mixture_given takes them, or NULL. */
+HAIRLUT_INLINE void hairlut_mixture_at(const hairlut_model *model, const float *shares, size_t stride, float theta_r, float offset,
+                                       hairlut_mix *mix)
+{
+    const int mirrored = model->mixture.mirrored, alone = model->mixture.rows == 1 && model->mixture.columns == 1;
+    const float h = hairlut_clamp(offset, -1.0f, 1.0f);
+    mix->side = mirrored && h < 0.0f ? -1.0f : 1.0f;
+    if (alone)
+        hairlut_mixture_alone(model, mix);
+    else
+        hairlut_mixture_between(model, theta_r, h, mix);
     if (shares)
-        hairlut_mixture_given(count, shares, stride, mix);
+        hairlut_mixture_given(model->lobe_count, shares, stride, mix);
+    if (shares || !alone) {
+        const float unit = 1.0f / mix->sum;
+        for (int k = 0; k < model->lobe_count; ++k)
+            mix->weight[k] = mix->share[k] * unit;
+    }
 }
 
 /* The lobe that u draws: the first k with u sum < share_0 + ... + share_k. Never one without share, also where u is 1. */

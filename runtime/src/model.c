@@ -134,6 +134,18 @@ static void list_tables(table_list *list, const hairlut_model_desc *desc)
     }
 }
 
+/* Numbers the axes by their rows. */
+static void number_grids(table_list *list)
+{
+    for (int k = 0; k < list->count; ++k) {
+        int first = 0;
+        while (list->axes[first].row_origin != list->axes[k].row_origin || list->axes[first].row_scale != list->axes[k].row_scale
+               || list->axes[first].height != list->axes[k].height)
+            ++first;
+        list->axes[k].grid = first;
+    }
+}
+
 static void build_lobe(hairlut_lobe *lobe, const hairlut_lobe_desc *desc, table_list *list)
 {
     memset(lobe, 0, sizeof *lobe);
@@ -165,6 +177,7 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
     next += (line - (uintptr_t)next % line) % line / sizeof(float);
     for (int k = 0; k < list->count; ++k)
         next = hairlut_build_axis(&list->axes[k], list->tables[k], next);
+    number_grids(list);
     for (int k = 0; k < desc->lobe_count; ++k)
         build_lobe(&lobes[k], lobe_at(desc, k), list);
     hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, mixture);

@@ -3,6 +3,7 @@
 #ifndef HAIRLUT_QUAD_H
 #define HAIRLUT_QUAD_H
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -43,12 +44,36 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return _mm_sub_ps(all, _mm_cvtepi32_ps(truncated));
 }
 
-static inline void hairlut_quad_lanes(hairlut_quad a, float lane[4])
+static inline hairlut_quad hairlut_quad_div(hairlut_quad a, hairlut_quad b) { return _mm_div_ps(a, b); }
+static inline hairlut_quad hairlut_quad_sqrt(hairlut_quad a) { return _mm_sqrt_ps(a); }
+static inline hairlut_quad hairlut_quad_max(hairlut_quad a, hairlut_quad b) { return _mm_max_ps(a, b); }
+static inline hairlut_quad hairlut_quad_min(hairlut_quad a, hairlut_quad b) { return _mm_min_ps(a, b); }
+static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
+static inline void hairlut_quad_store(float *p, hairlut_quad a) { _mm_storeu_ps(p, a); }
+static inline float hairlut_quad_first(hairlut_quad a) { return _mm_cvtss_f32(a); }
+static inline float hairlut_quad_second(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1)); }
+
+/* `negative` where a's sign bit is set, else `positive` */
+static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
 {
-    lane[0] = _mm_cvtss_f32(a);
-    lane[1] = _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1));
-    lane[2] = _mm_cvtss_f32(_mm_movehl_ps(a, a));
-    lane[3] = _mm_cvtss_f32(_mm_shuffle_ps(a, a, 3));
+    const __m128 sign = _mm_castsi128_ps(_mm_srai_epi32(_mm_castps_si128(a), 31));
+    return _mm_or_ps(_mm_and_ps(sign, negative), _mm_andnot_ps(sign, positive));
+}
+
+/* Lane l of row k becomes lane k of row l. */
+static inline void hairlut_quad_transpose(hairlut_quad row[4])
+{
+    _MM_TRANSPOSE4_PS(row[0], row[1], row[2], row[3]);
+}
+
+/* Lane l of a and of b become lanes 0 and 1 of column l; what the other two hold is not used. */
+static inline void hairlut_quad_pair(hairlut_quad a, hairlut_quad b, hairlut_quad column[4])
+{
+    const __m128 low = _mm_unpacklo_ps(a, b), high = _mm_unpackhi_ps(a, b);
+    column[0] = low;
+    column[1] = _mm_movehl_ps(low, low);
+    column[2] = high;
+    column[3] = _mm_movehl_ps(high, high);
 }
 
 /* x, the other lanes not used: gcc would clear them all the same, through an integer register. */
@@ -61,6 +86,18 @@ static inline hairlut_quad hairlut_quad_of(float x)
 #else
     return _mm_set_ss(x);
 #endif
+}
+
+static inline hairlut_quad hairlut_quad_of_four(float a, float b, float c, float d)
+{
+    const __m128 low = _mm_unpacklo_ps(hairlut_quad_of(a), hairlut_quad_of(b));
+    return _mm_movelh_ps(low, _mm_unpacklo_ps(hairlut_quad_of(c), hairlut_quad_of(d)));
+}
+
+/* a and b in lanes 0 and 1; the others are not used */
+static inline hairlut_quad hairlut_quad_of_two(float a, float b)
+{
+    return _mm_unpacklo_ps(hairlut_quad_of(a), hairlut_quad_of(b));
 }
 
 /* The float whose bits are those of s > 0 shifted right by two. */
@@ -100,9 +137,44 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return vdupq_n_f32(r - (float)*integer);
 }
 
-static inline void hairlut_quad_lanes(hairlut_quad a, float lane[4])
+static inline hairlut_quad hairlut_quad_div(hairlut_quad a, hairlut_quad b) { return vdivq_f32(a, b); }
+static inline hairlut_quad hairlut_quad_sqrt(hairlut_quad a) { return vsqrtq_f32(a); }
+static inline hairlut_quad hairlut_quad_max(hairlut_quad a, hairlut_quad b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
+static inline hairlut_quad hairlut_quad_min(hairlut_quad a, hairlut_quad b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
+static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return vabsq_f32(a); }
+static inline void hairlut_quad_store(float *p, hairlut_quad a) { vst1q_f32(p, a); }
+static inline float hairlut_quad_first(hairlut_quad a) { return vgetq_lane_f32(a, 0); }
+static inline float hairlut_quad_second(hairlut_quad a) { return vgetq_lane_f32(a, 1); }
+
+static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
 {
-    vst1q_f32(lane, a);
+    return vbslq_f32(vreinterpretq_u32_s32(vshrq_n_s32(vreinterpretq_s32_f32(a), 31)), negative, positive);
+}
+
+static inline void hairlut_quad_transpose(hairlut_quad row[4])
+{
+    const float32x4x2_t a = vtrnq_f32(row[0], row[1]), b = vtrnq_f32(row[2], row[3]);
+    row[0] = vcombine_f32(vget_low_f32(a.val[0]), vget_low_f32(b.val[0]));
+    row[1] = vcombine_f32(vget_low_f32(a.val[1]), vget_low_f32(b.val[1]));
+    row[2] = vcombine_f32(vget_high_f32(a.val[0]), vget_high_f32(b.val[0]));
+    row[3] = vcombine_f32(vget_high_f32(a.val[1]), vget_high_f32(b.val[1]));
+}
+
+static inline void hairlut_quad_pair(hairlut_quad a, hairlut_quad b, hairlut_quad column[4])
+{
+    column[0] = a, column[1] = b, column[2] = a, column[3] = b;
+    hairlut_quad_transpose(column);
+}
+
+static inline hairlut_quad hairlut_quad_of_four(float a, float b, float c, float d)
+{
+    const float lane[4] = {a, b, c, d};
+    return vld1q_f32(lane);
+}
+
+static inline hairlut_quad hairlut_quad_of_two(float a, float b)
+{
+    return hairlut_quad_of_four(a, b, a, b);
 }
 
 static inline float hairlut_shifted(float s)
@@ -165,10 +237,77 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return hairlut_quad_all(r - (float)*integer);
 }
 
-static inline void hairlut_quad_lanes(hairlut_quad a, float lane[4])
+static inline hairlut_quad hairlut_quad_div(hairlut_quad a, hairlut_quad b)
 {
     for (int l = 0; l < 4; ++l)
-        lane[l] = a.lane[l];
+        a.lane[l] /= b.lane[l];
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_sqrt(hairlut_quad a)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] = sqrtf(a.lane[l]);
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_max(hairlut_quad a, hairlut_quad b)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] = a.lane[l] > b.lane[l] ? a.lane[l] : b.lane[l];
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_min(hairlut_quad a, hairlut_quad b)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] = a.lane[l] < b.lane[l] ? a.lane[l] : b.lane[l];
+    return a;
+}
+
+static inline hairlut_quad hairlut_quad_abs(hairlut_quad a)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] = fabsf(a.lane[l]);
+    return a;
+}
+
+static inline void hairlut_quad_store(float *p, hairlut_quad a) { memcpy(p, a.lane, sizeof a.lane); }
+static inline float hairlut_quad_first(hairlut_quad a) { return a.lane[0]; }
+static inline float hairlut_quad_second(hairlut_quad a) { return a.lane[1]; }
+
+static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] = signbit(a.lane[l]) ? negative.lane[l] : positive.lane[l];
+    return a;
+}
+
+static inline void hairlut_quad_transpose(hairlut_quad row[4])
+{
+    for (int k = 0; k < 4; ++k)
+        for (int l = 0; l < k; ++l) {
+            const float kept = row[k].lane[l];
+            row[k].lane[l] = row[l].lane[k];
+            row[l].lane[k] = kept;
+        }
+}
+
+static inline void hairlut_quad_pair(hairlut_quad a, hairlut_quad b, hairlut_quad column[4])
+{
+    column[0] = a, column[1] = b, column[2] = a, column[3] = b;
+    hairlut_quad_transpose(column);
+}
+
+static inline hairlut_quad hairlut_quad_of_four(float a, float b, float c, float d)
+{
+    const hairlut_quad quad = {{a, b, c, d}};
+    return quad;
+}
+
+static inline hairlut_quad hairlut_quad_of_two(float a, float b)
+{
+    return hairlut_quad_of_four(a, b, a, b);
 }
 
 static inline float hairlut_shifted(float s)

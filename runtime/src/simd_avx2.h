@@ -28,6 +28,7 @@ static inline mask numbers(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_ORD
 static inline mask both(mask a, mask b) { return _mm256_and_ps(a, b); }
 static inline int every(mask m) { return _mm256_movemask_ps(m) == 0xff; }
 static inline real choose(mask m, real a, real b) { return _mm256_blendv_ps(b, a, m); }
+static inline real by_sign(real a, real negative, real positive) { return _mm256_blendv_ps(positive, negative, a); }
 
 static inline whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
 static inline void istore(int *p, whole a) { _mm256_storeu_si256((__m256i *)p, a); }

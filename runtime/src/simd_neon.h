@@ -24,6 +24,10 @@ static inline mask both(mask a, mask b) { return vandq_u32(a, b); }
 static inline int every(mask m) { return vminvq_u32(m) != 0; }
 static inline mask numbers(real a, real b) { return both(vceqq_f32(a, a), vceqq_f32(b, b)); }
 static inline real choose(mask m, real a, real b) { return vbslq_f32(m, a, b); }
+static inline real by_sign(real a, real negative, real positive)
+{
+    return choose(vreinterpretq_u32_s32(vshrq_n_s32(vreinterpretq_s32_f32(a), 31)), negative, positive);
+}
 static inline real smaller(real a, real b) { return choose(greater(b, a), a, b); }
 static inline real larger(real a, real b) { return choose(greater(a, b), a, b); }
 

@@ -177,6 +177,7 @@ static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *s
     axis.height = t->height;
     axis.stride = HAIRLUT_STRIDE(t->width);
     axis.step = HAIRLUT_STEP(t->width);
+    axis.grid = 0;
     return axis;
 }
 

@@ -59,9 +59,10 @@ LOOP void axis_sample(const hairlut_model *model, int lobe, int angle, size_t n,
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
-        const hairlut_draw draw = hairlut_axis_sample(a, theta_r[i], u[i]);
-        x[i] = hairlut_axis_inside(a, draw.x);
-        pdf[i] = 1.0f / draw.slope;
+        const hairlut_placed placed = hairlut_axis_find_place(a, hairlut_axis_row(a, theta_r[i]), u[i]);
+        const hairlut_draws draws = hairlut_draw_two(&placed, &placed);
+        x[i] = hairlut_axis_inside(a, hairlut_quad_first(draws.x));
+        pdf[i] = 1.0f / hairlut_quad_first(draws.slope);
     }
 }
 
@@ -69,9 +70,10 @@ LOOP void axis_pdf(const hairlut_model *model, int lobe, int angle, size_t n, co
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
-        const hairlut_search search = hairlut_axis_begin_search(a, theta_r[i], x[i]);
-        const hairlut_inverse inverse = hairlut_axis_inverse(a, &search, hairlut_axis_end_search(a, &search));
-        pdf[i] = hairlut_axis_contains(a, x[i]) * inverse.bend / inverse.root;
+        const hairlut_search search = hairlut_axis_begin_search(a, hairlut_axis_row(a, theta_r[i]), x[i]);
+        const hairlut_found one = hairlut_axis_find(&search), found[4] = {one, one, one, one};
+        const hairlut_inverses inverse = hairlut_invert_four(found);
+        pdf[i] = hairlut_axis_contains(a, x[i]) * hairlut_quad_first(inverse.bend) / hairlut_quad_first(inverse.root);
     }
 }
 
@@ -86,11 +88,10 @@ LOOP void axis_cell_width(const hairlut_model *model, int lobe, int angle, size_
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
-        const hairlut_search search = hairlut_axis_begin_search(a, theta_r[i], x[i]);
-        const float t = search.row.t;
-        int high;
-        const int k = hairlut_axis_nearer(a, hairlut_axis_end_search(a, &search), &high);
-        width[i] = fabsf(hairlut_axis_cell(a, search.row.j, hairlut_quad_all(1.0f - t), hairlut_quad_all(t), k, high).w);
+        const hairlut_search search = hairlut_axis_begin_search(a, hairlut_axis_row(a, theta_r[i]), x[i]);
+        float cell[HAIRLUT_CELL];
+        hairlut_quad_store(cell, hairlut_axis_find(&search).cell);
+        width[i] = cell[2] / HAIRLUT_SCALE;
     }
 }
 
@@ -98,7 +99,7 @@ static int same_axis(const hairlut_axis *a, const hairlut_axis *b)
 {
     const size_t rows = (size_t)HAIRLUT_STORED(a->columns, a->height), cells = (size_t)HAIRLUT_CELLS(a->columns, a->height);
     const size_t knots = (size_t)(HAIRLUT_KNOT * HAIRLUT_HALF(a->columns));
-    return a->columns == b->columns && a->height == b->height && a->row_origin == b->row_origin
+    return a->columns == b->columns && a->height == b->height && a->grid == b->grid && a->row_origin == b->row_origin
            && a->row_scale == b->row_scale && a->warp == b->warp && a->e == b->e && a->scale == b->scale
            && a->origin == b->origin && a->low == b->low && a->high == b->high
            && memcmp(a->rows, b->rows, rows * sizeof(float)) == 0

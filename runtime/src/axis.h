@@ -174,10 +174,11 @@ typedef struct hairlut_found {
  * range of a float, whether a cell is 1e-12 or 2 pi rad wide. In the high half also by -1: w, D, X and Z are never negative. */
 HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_search *search)
 {
+    static const float scales[2] = {HAIRLUT_SCALE, -HAIRLUT_SCALE}; /* loaded: the half is as good as random, and so would be a branch */
     hairlut_found found;
     const hairlut_axis *axis = search->axis;
     const int i = hairlut_axis_nearer(axis, hairlut_axis_end_search(search), &found.high);
-    const float scale = found.high ? -HAIRLUT_SCALE : HAIRLUT_SCALE, t = search->row.t;
+    const float scale = scales[found.high], t = search->row.t;
     found.cell = hairlut_axis_cell(axis, search->row.j, hairlut_quad_all(scale * (1.0f - t)), hairlut_quad_all(scale * t), i, found.high);
     found.x = scale * search->x;
     found.knot = axis->knots + HAIRLUT_KNOT * i;

@@ -7,7 +7,7 @@
 #include "batch.h"
 
 /* Samples a pass; the arrays of a block have room for a vector more, which a group that ends within it writes. */
-enum { BLOCK = 128, ROOM = BLOCK + LANES };
+enum { BLOCK = 256, ROOM = BLOCK + LANES };
 
 /* Before a loop over single samples: less of it is counting. clang does so by itself. */
 #if defined(__GNUC__) && !defined(__clang__)

@@ -28,6 +28,11 @@ static inline size_t whole_vectors(size_t n)
     return (n + LANES - 1) / LANES * LANES;
 }
 
+static inline real side_at(const hairlut_model *model, const mixes *m, size_t s)
+{
+    return model->mixture.mirrored ? load(m->side + s) : all(1.0f);
+}
+
 /* hairlut_turned_relative, of samples s .. s+LANES-1 */
 static inline real turned_relative(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t s)
 {
@@ -36,7 +41,7 @@ static inline real turned_relative(const hairlut_model *model, int k, const dire
     if (!mixture->turned && !mixture->mirrored)
         return relative;
     const real turn = mixture->turned ? load(m->turn[k] + s) : all(0.0f);
-    return wrap(sub(mul(load(m->side + s), relative), turn), 0.0f);
+    return wrap(sub(mul(side_at(model, m, s), relative), turn), 0.0f);
 }
 
 /* The density of lobe k of directions from .. from+n-1, to the same places of pdf. What is written beyond, up to a whole vector,
@@ -50,8 +55,9 @@ static inline void range_density(const hairlut_model *model, int k, const direct
     lobe_density(&model->lobes[k], padded, d->theta_r + from, d->theta_i + from, azimuth, pdf + from);
 }
 
-/* The same of those of the first n that have a share of the lobe and drew another one; 0 for the others. */
-static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t n, float *pdf)
+/* The same of those of the first n that have a share of the lobe and are not in from .. to-1; 0 for the others. */
+static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t n, size_t from, size_t to,
+                                float *pdf)
 {
     float azimuth[ROOM], theta_r[BLOCK], theta_i[BLOCK], asked[BLOCK], density[BLOCK];
     int list[BLOCK];
@@ -60,15 +66,15 @@ static inline void list_density(const hairlut_model *model, int k, const directi
         store(azimuth + s, model->lobes[k].uniform ? all(0.0f) : turned_relative(model, k, d, m, s));
     for (size_t s = 0; s < n; ++s) {
         list[count] = (int)s;
-        count += m->weight[k][s] > 0.0f && m->chosen[s] != (float)k;
+        count += m->weight[k][s] > 0.0f && (s < from || s >= to);
         pdf[s] = 0.0f;
     }
     const size_t padded = whole_vectors(count);
     for (size_t s = 0; s < padded; ++s) {
-        const int from = s < count ? list[s] : list[0];
-        theta_r[s] = d->theta_r[from];
-        theta_i[s] = d->theta_i[from];
-        asked[s] = azimuth[from];
+        const int at = s < count ? list[s] : list[0];
+        theta_r[s] = d->theta_r[at];
+        theta_i[s] = d->theta_i[at];
+        asked[s] = azimuth[at];
     }
     lobe_density(&model->lobes[k], padded, theta_r, theta_i, asked, density);
     for (size_t s = 0; s < count; ++s)
@@ -92,7 +98,7 @@ static inline void add_densities(const hairlut_model *model, const directions *d
         if (!m->some[k])
             continue;
         if (!m->every[k]) {
-            list_density(model, k, d, m, n, pdf);
+            list_density(model, k, d, m, n, from, to, pdf);
         } else {
             if (from > 0)
                 range_density(model, k, d, m, 0, from, pdf);
@@ -102,7 +108,7 @@ static inline void add_densities(const hairlut_model *model, const directions *d
         for (size_t s = from; s < to; ++s)
             pdf[s] = drawn[s];
         for (size_t s = 0; s < n; s += LANES)
-            store(sum + s, add(load(sum + s), mul(load(m->weight[k] + s), load(pdf + s))));
+            store(sum + s, add(load(sum + s), mul(weight_at(model, m, k, s), load(pdf + s))));
     }
 }
 
@@ -122,13 +128,15 @@ static inline void pdf_hair_block(const hairlut_model *model, size_t n, const ha
     directions d;
     mixes m;
     float sum[BLOCK];
+    real share[HAIRLUT_MAX_LOBES];
+    begin_mixes(model, in->given, &m);
     end_directions(&d, &m, n);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), theta_i = load(in->theta_i + s);
         const real phi_i = load(in->phi_i + s), offset = in->offset ? load(in->offset + s) : all(0.0f);
         const mask wanted = both(both(known(theta_r, phi_r, theta_i, phi_i), is_finite(phi_i)), numbers(offset, offset));
-        mix_at(model, in->given, theta_r, offset, wanted, all(0.0f), &m, s);
-        store(m.chosen + s, all(-1.0f)); /* none */
+        const real sum_of_shares = mix_at(model, in->given, theta_r, offset, &m, s, share);
+        store_weights(model, share, sum_of_shares, wanted, &m, s);
         store(d.theta_r + s, theta_r);
         store(d.r + s, wrap(phi_r, -hairlut_pi));
         store(d.theta_i + s, theta_i);
@@ -137,23 +145,21 @@ static inline void pdf_hair_block(const hairlut_model *model, size_t n, const ha
     sum_up(model, n, &m);
     add_densities(model, &d, &m, n, NULL, NULL, sum);
     for (size_t s = 0; s < n; s += LANES)
-        store(out + s, load(sum + s));
+        store(out + s, choose(greater(load(m.valid + s), all(0.0f)), load(sum + s), all(0.0f)));
 }
 
 /* order[s] is the place of the sample that comes s-th where samples are sorted by the lobes that they draw. */
-static inline void sort_by_lobe(int lobe_count, size_t n, const float *chosen, ranges *own, int *order)
+static inline void sort_by_lobe(int lobe_count, size_t n, const int *chosen, ranges *own, int *order)
 {
-    size_t next[HAIRLUT_MAX_LOBES];
-    for (int k = 0; k <= lobe_count; ++k)
-        own->first[k] = 0;
-    for (size_t s = 0; s < n; ++s)
-        ++own->first[(int)chosen[s] + 1];
-    for (int k = 0; k < lobe_count; ++k)
-        next[k] = own->first[k + 1] += own->first[k];
-    for (int k = 0; k < lobe_count; ++k)
-        next[k] = own->first[k];
-    for (size_t s = 0; s < n; ++s)
-        order[next[(int)chosen[s]]++] = (int)s;
+    size_t count = 0;
+    for (int k = 0; k < lobe_count; ++k) {
+        own->first[k] = count;
+        for (size_t s = 0; s < n; ++s) { /* no branch: the lobe is as good as random */
+            order[count] = (int)s;
+            count += chosen[s] == k;
+        }
+    }
+    own->first[lobe_count] = count;
 }
 
 /* to[s] = from[order[s]]; a vector beyond the end is 0. */
@@ -185,16 +191,20 @@ typedef struct numbers_drawn {
     float theta[ROOM], phi[ROOM];
 } numbers_drawn;
 
-/* The mixtures of a block, and its inputs, in the order of the lobes drawn. */
+/* The mixtures of a block, and its inputs, in the order of the lobes drawn. What is valid stays in the order of the inputs. */
 static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, mixes *m, directions *d, numbers_drawn *u,
                            ranges *own, int *order)
 {
     float r[BLOCK];
+    real share[HAIRLUT_MAX_LOBES];
+    begin_mixes(model, in->given, m);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), u_lobe = load(in->u_lobe + s);
         const real offset = in->offset ? load(in->offset + s) : all(0.0f);
         const mask wanted = both(known(theta_r, phi_r, load(in->u_theta + s), load(in->u_phi + s)), numbers(offset, u_lobe));
-        mix_at(model, in->given, theta_r, offset, wanted, u_lobe, m, s);
+        const real sum = mix_at(model, in->given, theta_r, offset, m, s, share);
+        store_weights(model, share, sum, wanted, m, s);
+        choose_lobes(model, share, sum, u_lobe, m, s);
         store(r + s, wrap(phi_r, -hairlut_pi));
     }
     sum_up(model, n, m);
@@ -204,12 +214,13 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
     reorder(u->theta, in->u_theta, order, n);
     reorder(u->phi, in->u_phi, order, n);
     for (int k = 0; k < model->lobe_count; ++k) {
-        reorder_in_place(m->weight[k], order, n);
+        if (!m->alone)
+            reorder_in_place(m->weight[k], order, n);
         if (model->mixture.turned)
             reorder_in_place(m->turn[k], order, n);
     }
-    reorder_in_place(m->side, order, n);
-    reorder_in_place(m->chosen, order, n);
+    if (model->mixture.mirrored)
+        reorder_in_place(m->side, order, n);
 }
 
 /* hairlut_turned_incident, of samples s .. s+LANES-1 */
@@ -217,7 +228,7 @@ static inline real turned_incident(const hairlut_model *model, int k, const mixe
 {
     const hairlut_mixture *mixture = &model->mixture;
     const real turn = mixture->turned ? load(m->turn[k] + s) : all(0.0f);
-    const real relative = mul(load(m->side + s), add(x, turn));
+    const real relative = mul(side_at(model, m, s), add(x, turn));
     return wrap(incident(model->lobes[k].azimuth, r, relative), -hairlut_pi);
 }
 
@@ -237,6 +248,17 @@ static inline void draw_range(const hairlut_model *model, int k, const mixes *m,
     }
 }
 
+/* 0 for the densities that cannot be given. */
+static inline void clear_invalid(const float *valid, size_t n, hairlut_samples out)
+{
+    for (size_t s = 0; s < n; ++s) {
+        if (out.pdf_angle && valid[s] == 0.0f)
+            out.pdf_angle[s] = 0.0f;
+        if (out.pdf_solid_angle && valid[s] == 0.0f)
+            out.pdf_solid_angle[s] = 0.0f;
+    }
+}
+
 /* hairlut_sample_hair */
 static inline void sample_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, hairlut_samples out)
 {
@@ -244,7 +266,7 @@ static inline void sample_hair_block(const hairlut_model *model, size_t n, const
     numbers_drawn u;
     mixes m;
     ranges own;
-    int order[BLOCK];
+    int order[ROOM];
     float drawn[ROOM], cosines[ROOM], pdf[BLOCK], solid[BLOCK];
     prepare(model, n, in, &m, &d, &u, &own, order);
     for (int k = 0; k < model->lobe_count; ++k)
@@ -260,6 +282,8 @@ static inline void sample_hair_block(const hairlut_model *model, size_t n, const
         restore_order(out.pdf_angle, pdf, order, n);
     if (out.pdf_solid_angle)
         restore_order(out.pdf_solid_angle, solid, order, n);
+    if (!m.all_valid)
+        clear_invalid(m.valid, n, out);
 }
 
 #endif

@@ -15,10 +15,13 @@ typedef struct given_shares {
 
 /* The mixtures of a block. Of arrays of lobes, as many are set as the model has. */
 typedef struct mixes {
-    float weight[HAIRLUT_MAX_LOBES][ROOM]; /* share / sum */
-    float turn[HAIRLUT_MAX_LOBES][ROOM];   /* not set where no lobe of the model is turned */
-    float side[ROOM];
-    float chosen[ROOM];                    /* the lobe that is drawn, a whole number */
+    float weight[HAIRLUT_MAX_LOBES][ROOM]; /* share / sum; where no density can be given, any number or NaN */
+    float turn[HAIRLUT_MAX_LOBES][ROOM];   /* only set where a lobe of the model is turned */
+    float side[ROOM];                      /* only set where the model is mirrored */
+    int chosen[BLOCK];                     /* the lobe that is drawn */
+    float valid[BLOCK];                    /* 1, or 0 where no density can be given */
+    int all_valid;
+    int alone;                             /* whether weights are those of the model's only node, and not stored */
     int some[HAIRLUT_MAX_LOBES];           /* whether any of the block has a share of the lobe */
     int every[HAIRLUT_MAX_LOBES];          /* whether all have */
 } mixes;
@@ -106,39 +109,71 @@ static inline real take_shares(int count, given_shares given, size_t s, real sha
     return choose(at_least(finite, all(0.0f)), sum, all(0.0f));
 }
 
-/* hairlut_mixture_at of samples s .. s+LANES-1, weights in place of shares, and hairlut_mixture_choose. Where `wanted` is not
- * true, or no density can be given, all weights are 0. */
-static inline void mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mask wanted, real u_lobe, mixes *m,
-                          size_t s)
+/* Whether a model's mixture has a single node. */
+static inline int is_alone(const hairlut_model *model)
+{
+    return model->mixture.rows == 1 && model->mixture.columns == 1;
+}
+
+/* hairlut_mixture_at of samples s .. s+LANES-1; returns the shares and their sum */
+static inline real mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mixes *m, size_t s,
+                          real share[HAIRLUT_MAX_LOBES])
 {
     const hairlut_mixture *mixture = &model->mixture;
-    const int count = model->lobe_count, constant = mixture->rows == 1 && mixture->columns == 1;
+    const int count = model->lobe_count, alone = is_alone(model);
     const real h = clamp(offset, all(-1.0f), all(1.0f));
-    real share[HAIRLUT_MAX_LOBES], turn[HAIRLUT_MAX_LOBES], sum = all(0.0f);
+    real sum = all(0.0f);
     corners c;
-    if (!constant)
+    if (!alone)
         find_corners(model, theta_r, arcsine(mixture->mirrored ? magnitude(h) : h), &c);
     for (int k = 0; k < count; ++k) {
         const float *corner = mixture->corners + HAIRLUT_CORNER * k;
-        turn[k] = all(corner[1]);
-        share[k] = constant ? all(corner[0]) : blend_corners(mixture, &c, k, &turn[k]);
+        real turn = all(corner[1]);
+        share[k] = alone ? all(corner[0]) : blend_corners(mixture, &c, k, &turn);
         sum = add(sum, share[k]);
         if (mixture->turned)
-            store(m->turn[k] + s, turn[k]);
+            store(m->turn[k] + s, turn);
     }
     if (given.shares)
         sum = take_shares(count, given, s, share);
-    store(m->side + s, mixture->mirrored ? choose(greater(all(0.0f), h), all(-1.0f), all(1.0f)) : all(1.0f));
+    if (mixture->mirrored)
+        store(m->side + s, choose(greater(all(0.0f), h), all(-1.0f), all(1.0f)));
+    return sum;
+}
+
+/* The weights of those shares; `wanted`, whether the arguments have a density. */
+static inline void store_weights(const hairlut_model *model, const real *share, real sum, mask wanted, mixes *m, size_t s)
+{
     const mask valid = both(wanted, greater(sum, all(0.0f)));
-    const real unit = over(all(1.0f), sum), target = mul(clamp(u_lobe, all(0.0f), all(1.0f)), sum);
+    const real unit = over(all(1.0f), sum);
+    for (int k = 0; k < model->lobe_count && !m->alone; ++k)
+        store(m->weight[k] + s, mul(share[k], unit));
+    store(m->valid + s, choose(valid, all(1.0f), all(0.0f)));
+    m->all_valid &= every(valid);
+}
+
+/* hairlut_mixture_choose */
+static inline void choose_lobes(const hairlut_model *model, const real *share, real sum, real u_lobe, mixes *m, size_t s)
+{
+    const real target = mul(clamp(u_lobe, all(0.0f), all(1.0f)), sum);
     real below = all(0.0f), chosen = all(0.0f);
-    for (int k = 0; k < count; ++k) {
-        const mask is_positive = greater(share[k], all(0.0f));
-        chosen = choose(both(at_least(target, below), is_positive), all((float)k), chosen);
+    for (int k = 0; k < model->lobe_count; ++k) {
+        chosen = choose(both(at_least(target, below), greater(share[k], all(0.0f))), all((float)k), chosen);
         below = add(below, share[k]);
-        store(m->weight[k] + s, choose(valid, mul(share[k], unit), all(0.0f)));
     }
-    store(m->chosen + s, chosen);
+    istore(m->chosen + s, truncated(chosen));
+}
+
+/* The weight of lobe k of samples s .. s+LANES-1 */
+static inline real weight_at(const hairlut_model *model, const mixes *m, int k, size_t s)
+{
+    return m->alone ? all(model->mixture.corners[HAIRLUT_CORNER * k + 3]) : load(m->weight[k] + s);
+}
+
+static inline void begin_mixes(const hairlut_model *model, given_shares given, mixes *m)
+{
+    m->all_valid = 1;
+    m->alone = is_alone(model) && !given.shares;
 }
 
 /* Fills `some` and `every` once the weights of n samples are set. */
@@ -146,9 +181,9 @@ static inline void sum_up(const hairlut_model *model, size_t n, mixes *m)
 {
     for (int k = 0; k < model->lobe_count; ++k) {
         real least = all(1.0f), most = all(0.0f);
-        for (size_t s = 0; s < n; s += LANES) {
-            least = smaller(load(m->weight[k] + s), least);
-            most = larger(load(m->weight[k] + s), most);
+        for (size_t s = 0; s < (m->alone ? LANES : n); s += LANES) {
+            least = smaller(weight_at(model, m, k, s), least);
+            most = larger(weight_at(model, m, k, s), most);
         }
         m->some[k] = !every(at_least(all(0.0f), most));
         m->every[k] = every(greater(least, all(0.0f)));

@@ -59,11 +59,13 @@ typedef struct hairlut_searches {
 HAIRLUT_INLINE float hairlut_lobe_begin_search(const hairlut_lobe *lobe, float theta_r, hairlut_row row, float theta_i, float phi,
                                                hairlut_searches *under_way)
 {
-    under_way->search[under_way->count++] = hairlut_axis_begin_search(&lobe->theta, row, theta_i);
+    hairlut_search *next = under_way->search + under_way->count;
+    next[0] = hairlut_axis_begin_search(&lobe->theta, row, theta_i);
+    under_way->count += lobe->uniform ? 1 : 2;
     if (lobe->uniform)
-        return hairlut_axis_contains(&lobe->theta, theta_i);
-    under_way->search[under_way->count++] = hairlut_axis_begin_search(&lobe->phi, hairlut_phi_row(lobe, theta_r, row), phi);
-    return hairlut_axis_contains(&lobe->theta, theta_i) * hairlut_axis_contains(&lobe->phi, phi);
+        return (float)(next[0].x == theta_i);
+    next[1] = hairlut_axis_begin_search(&lobe->phi, hairlut_phi_row(lobe, theta_r, row), phi);
+    return (float)((next[0].x == theta_i) & (next[1].x == phi));
 }
 
 /* The root and bend of all searches; so many floats are written as whole quads hold. */

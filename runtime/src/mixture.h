@@ -107,7 +107,7 @@ HAIRLUT_INLINE void hairlut_mixture_at(const hairlut_model *model, const float *
 {
     const int mirrored = model->mixture.mirrored, alone = model->mixture.rows == 1 && model->mixture.columns == 1;
     const float h = hairlut_clamp(offset, -1.0f, 1.0f);
-    mix->side = mirrored && h < 0.0f ? -1.0f : 1.0f;
+    mix->side = (float)(1 - 2 * (mirrored & (h < 0.0f)));
     if (alone)
         hairlut_mixture_alone(model, mix);
     else

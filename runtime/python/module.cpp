@@ -35,16 +35,19 @@ constexpr std::size_t BLOCK = 2048;
 // One argument of an array call, block by block.
 class Column {
 public:
-    Column(const float *data, std::int64_t stride) : m_data(data), m_stride(stride) {
+    Column(const float *data, std::int64_t stride) : m_data(data), m_stride(stride)
+    {
         if (stride != 1)
             m_copy.resize(BLOCK);
     }
-    Column(const Input &input, std::size_t n) : Column(input.data(), input.stride(0)) {
+    Column(const Input &input, std::size_t n) : Column(input.data(), input.stride(0))
+    {
         if (input.shape(0) != n)
             throw std::invalid_argument("arrays of different lengths");
     }
     // n contiguous floats from sample s on
-    const float *block(std::size_t s, std::size_t n) {
+    const float *block(std::size_t s, std::size_t n)
+    {
         const float *from = m_data + static_cast<std::int64_t>(s) * m_stride;
         if (m_stride == 1)
             return from;
@@ -62,7 +65,8 @@ private:
 // Shares of a block, lobe by lobe, as hairlut.h wants them; NULL for the model's own.
 class ShareBlock {
 public:
-    ShareBlock(const std::optional<Shares> &shares, int lobes, std::size_t n) : m_lobes(static_cast<std::size_t>(lobes)) {
+    ShareBlock(const std::optional<Shares> &shares, int lobes, std::size_t n) : m_lobes(static_cast<std::size_t>(lobes))
+    {
         if (!shares)
             return;
         if (shares->shape(0) != n || shares->shape(1) != m_lobes)
@@ -72,12 +76,14 @@ public:
         m_lobe_stride = shares->stride(1);
         m_copy.resize(BLOCK * m_lobes);
     }
-    const float *block(std::size_t s, std::size_t n) {
+    const float *block(std::size_t s, std::size_t n)
+    {
         if (!m_data)
             return nullptr;
         for (std::size_t k = 0; k < m_lobes; ++k)
             for (std::size_t i = 0; i < n; ++i)
-                m_copy[k * n + i] = m_data[static_cast<std::int64_t>(s + i) * m_stride + static_cast<std::int64_t>(k) * m_lobe_stride];
+                m_copy[k * n + i] =
+                    m_data[static_cast<std::int64_t>(s + i) * m_stride + static_cast<std::int64_t>(k) * m_lobe_stride];
         return m_copy.data();
     }
 
@@ -88,20 +94,23 @@ private:
     std::vector<float> m_copy;
 };
 
-template <typename Call> void in_blocks(std::size_t n, const Call &call) {
+template <typename Call> void in_blocks(std::size_t n, const Call &call)
+{
     const nb::gil_scoped_release released;
     for (std::size_t s = 0; s < n; s += BLOCK)
         call(s, std::min(BLOCK, n - s));
 }
 
-hairlut_samples outputs(const std::vector<Output> &out, std::size_t n) {
+hairlut_samples outputs(const std::vector<Output> &out, std::size_t n)
+{
     for (const Output &each : out)
         if (out.size() != 4 || each.shape(0) != n)
             throw std::invalid_argument("outputs: expected four arrays of one length");
     return {out[0].data(), out[1].data(), out[2].data(), out[3].data()};
 }
 
-hairlut_samples from(const hairlut_samples &out, std::size_t s) {
+hairlut_samples from(const hairlut_samples &out, std::size_t s)
+{
     return {out.theta_i + s, out.phi_i + s, out.pdf_angle + s, out.pdf_solid_angle + s};
 }
 
@@ -113,7 +122,8 @@ public:
     Model &operator=(const Model &) = delete;
     ~Model() { hairlut_free(m_made); }
 
-    std::vector<std::string> lobes() const {
+    std::vector<std::string> lobes() const
+    {
         std::vector<std::string> names;
         for (int k = 0; k < hairlut_lobe_count(m_model); ++k)
             names.emplace_back(hairlut_lobe_name(m_model, k));
@@ -121,7 +131,8 @@ public:
     }
 
     void sample(const std::optional<Shares> &shares, const Input &theta_r, const Input &phi_r, const Input &offset,
-                const Input &u_lobe, const Input &u_theta, const Input &u_phi, const std::vector<Output> &results) const {
+                const Input &u_lobe, const Input &u_theta, const Input &u_phi, const std::vector<Output> &results) const
+    {
         const std::size_t n = theta_r.shape(0);
         ShareBlock mix(shares, hairlut_lobe_count(m_model), n);
         Column r(theta_r, n), p(phi_r, n), h(offset, n), l(u_lobe, n), t(u_theta, n), f(u_phi, n);
@@ -133,7 +144,8 @@ public:
     }
 
     void pdf(const std::optional<Shares> &shares, const Input &theta_r, const Input &phi_r, const Input &offset,
-             const Input &theta_i, const Input &phi_i, const Output &result) const {
+             const Input &theta_i, const Input &phi_i, const Output &result) const
+    {
         const std::size_t n = theta_r.shape(0);
         ShareBlock mix(shares, hairlut_lobe_count(m_model), n);
         Column r(theta_r, n), p(phi_r, n), h(offset, n), t(theta_i, n), f(phi_i, n);
@@ -145,17 +157,20 @@ public:
     }
 
     void sample_lobe(int lobe, const Input &theta_r, const Input &phi_r, const Input &u_theta, const Input &u_phi,
-                     const std::vector<Output> &results) const {
+                     const std::vector<Output> &results) const
+    {
         const std::size_t n = theta_r.shape(0);
         Column r(theta_r, n), p(phi_r, n), t(u_theta, n), f(u_phi, n);
         const hairlut_samples out = outputs(results, n);
         in_blocks(n, [&](std::size_t s, std::size_t m) {
-            hairlut_sample_lobe_n(m_model, lobe, m, r.block(s, m), p.block(s, m), t.block(s, m), f.block(s, m), from(out, s));
+            hairlut_sample_lobe_n(m_model, lobe, m, r.block(s, m), p.block(s, m), t.block(s, m), f.block(s, m),
+                                  from(out, s));
         });
     }
 
     void pdf_lobe(int lobe, const Input &theta_r, const Input &phi_r, const Input &theta_i, const Input &phi_i,
-                  const Output &result) const {
+                  const Output &result) const
+    {
         const std::size_t n = theta_r.shape(0);
         Column r(theta_r, n), p(phi_r, n), t(theta_i, n), f(phi_i, n);
         float *out = result.data();
@@ -165,7 +180,8 @@ public:
     }
 
     void invert_lobe(int lobe, const Input &theta_r, const Input &phi_r, const Input &theta_i, const Input &phi_i,
-                     const Output &u_theta, const Output &u_phi) const {
+                     const Output &u_theta, const Output &u_phi) const
+    {
         const std::size_t n = theta_r.shape(0);
         Column r(theta_r, n), p(phi_r, n), t(theta_i, n), f(phi_i, n);
         float *first = u_theta.data(), *second = u_phi.data();
@@ -190,8 +206,9 @@ using TableData = std::tuple<Grid, float, float, float, float, bool, float>;
 // name, number of the theta table, number of the phi table or -1, whether phi is a sum
 using LobeData = std::tuple<std::string, int, int, bool>;
 
-Model *create(const std::vector<TableData> &tables, const std::vector<LobeData> &lobes, const Nodes &theta_r, const Nodes &offset,
-              const Grid &share, const Grid &turn, bool mirrored) {
+Model *create(const std::vector<TableData> &tables, const std::vector<LobeData> &lobes, const Nodes &theta_r,
+              const Nodes &offset, const Grid &share, const Grid &turn, bool mirrored)
+{
     std::vector<hairlut_table> descriptors;
     for (const auto &[texels, theta_r_min, theta_r_max, low, high, octaves, e] : tables)
         descriptors.push_back({sizeof(hairlut_table), texels.data(), static_cast<int>(texels.shape(1)),
@@ -205,9 +222,14 @@ Model *create(const std::vector<TableData> &tables, const std::vector<LobeData> 
     for (const Grid *grid : {&share, &turn})
         if (grid->shape(0) != lobes.size() || grid->shape(1) != theta_r.shape(0) || grid->shape(2) != offset.shape(0))
             throw std::invalid_argument("share, turn: expected (lobes, theta_r, offset)");
-    const hairlut_mixture_desc mixture = {sizeof(hairlut_mixture_desc), static_cast<int>(theta_r.shape(0)),
-                                          static_cast<int>(offset.shape(0)), theta_r.data(), offset.data(), share.data(),
-                                          turn.data(), mirrored ? 1 : 0};
+    const hairlut_mixture_desc mixture = {sizeof(hairlut_mixture_desc),
+                                          static_cast<int>(theta_r.shape(0)),
+                                          static_cast<int>(offset.shape(0)),
+                                          theta_r.data(),
+                                          offset.data(),
+                                          share.data(),
+                                          turn.data(),
+                                          mirrored ? 1 : 0};
     const hairlut_model_desc desc = {sizeof(hairlut_model_desc), static_cast<int>(lobes.size()), named.data(), &mixture};
     hairlut_model *made = nullptr;
     char message[HAIRLUT_MESSAGE_SIZE];
@@ -218,12 +240,13 @@ Model *create(const std::vector<TableData> &tables, const std::vector<LobeData> 
 
 } // namespace
 
-NB_MODULE(_core, module) {
+NB_MODULE(_core, module)
+{
     module.doc() = "The C library behind hairlut.Model: use that.";
     nb::class_<Model>(module, "Model")
         .def_prop_ro("lobes", &Model::lobes)
-        .def("sample", &Model::sample, "shares"_a.none(), "theta_r"_a, "phi_r"_a, "offset"_a, "u_lobe"_a, "u_theta"_a, "u_phi"_a,
-             "out"_a)
+        .def("sample", &Model::sample, "shares"_a.none(), "theta_r"_a, "phi_r"_a, "offset"_a, "u_lobe"_a, "u_theta"_a,
+             "u_phi"_a, "out"_a)
         .def("pdf", &Model::pdf, "shares"_a.none(), "theta_r"_a, "phi_r"_a, "offset"_a, "theta_i"_a, "phi_i"_a, "out"_a)
         .def("sample_lobe", &Model::sample_lobe, "lobe"_a, "theta_r"_a, "phi_r"_a, "u_theta"_a, "u_phi"_a, "out"_a)
         .def("pdf_lobe", &Model::pdf_lobe, "lobe"_a, "theta_r"_a, "phi_r"_a, "theta_i"_a, "phi_i"_a, "out"_a)

@@ -20,7 +20,8 @@ static inline void hairlut_malloc_release(void *user, void *memory)
 }
 
 /* `requested` may be NULL or zeroed; half a pair of hooks is an error. */
-static inline hairlut_result hairlut_choose_allocator(const hairlut_allocator *requested, hairlut_allocator *chosen, char *message)
+static inline hairlut_result hairlut_choose_allocator(const hairlut_allocator *requested, hairlut_allocator *chosen,
+                                                      char *message)
 {
     const hairlut_allocator standard = {hairlut_malloc, hairlut_malloc_release, NULL};
     *chosen = requested && (requested->allocate || requested->release) ? *requested : standard;

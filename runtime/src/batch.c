@@ -27,8 +27,9 @@ const hairlut_batch *hairlut_batch_widest(void)
     return batch;
 }
 
-void hairlut_sample_hair_n(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
-                           const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi, hairlut_samples out)
+void hairlut_sample_hair_n(const hairlut_model *model, size_t n, const float *shares, const float *theta_r,
+                           const float *phi_r, const float *offset, const float *u_lobe, const float *u_theta,
+                           const float *u_phi, hairlut_samples out)
 {
     hairlut_batch_widest()->sample_hair(model, n, shares, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, out);
 }

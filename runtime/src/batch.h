@@ -20,7 +20,8 @@ typedef struct hairlut_batch {
     void (*pdf_lobe)(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                      const float *theta_i, const float *phi_i, float *pdf_angle);
     void (*sample_hair)(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
-                        const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi, hairlut_samples out);
+                        const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi,
+                        hairlut_samples out);
     void (*pdf_hair)(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
                      const float *offset, const float *theta_i, const float *phi_i, float *pdf_angle);
 } hairlut_batch;

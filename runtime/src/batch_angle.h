@@ -44,8 +44,8 @@ static inline real wrap_up(real phi, float low)
 /* hairlut_cos */
 static inline real cosine(real theta)
 {
-    const real z = larger(add(sub(all(hairlut_half_pi_high), magnitude(theta)), all(hairlut_half_pi_low)),
-                          all(-hairlut_half_pi_low));
+    const real z =
+        larger(add(sub(all(hairlut_half_pi_high), magnitude(theta)), all(hairlut_half_pi_low)), all(-hairlut_half_pi_low));
     const real w = mul(z, z);
     const real low = add(all(hairlut_sine[0]), mul(all(hairlut_sine[1]), w));
     const real high = add(all(hairlut_sine[2]), mul(all(hairlut_sine[3]), w));
@@ -59,7 +59,8 @@ static inline real arcsine(real h)
     const mask large = greater(a, all(0.5f));
     const real z = choose(large, mul(all(0.5f), sub(all(1.0f), a)), mul(a, a)), r = choose(large, root(z), a);
     const real p = add(all(hairlut_arcsine[3]), mul(z, all(hairlut_arcsine[4])));
-    const real q = add(all(hairlut_arcsine[0]), mul(z, add(all(hairlut_arcsine[1]), mul(z, add(all(hairlut_arcsine[2]), mul(z, p))))));
+    const real q =
+        add(all(hairlut_arcsine[0]), mul(z, add(all(hairlut_arcsine[1]), mul(z, add(all(hairlut_arcsine[2]), mul(z, p))))));
     const real y = add(r, mul(mul(r, z), q));
     const real size = choose(large, sub(all(hairlut_half_pi_high), mul(all(2.0f), y)), y);
     return choose(greater(all(0.0f), h), sub(all(0.0f), size), size);

@@ -97,8 +97,14 @@ static inline const float *from_on(const float *array, size_t s)
 
 static inline hair_inputs inputs_from(const hair_inputs *in, size_t s)
 {
-    const hair_inputs rest = {{from_on(in->given.shares, s), in->given.stride}, in->theta_r + s, in->phi_r + s, from_on(in->offset, s),
-                              from_on(in->u_lobe, s), from_on(in->u_theta, s), from_on(in->u_phi, s), from_on(in->theta_i, s),
+    const hair_inputs rest = {{from_on(in->given.shares, s), in->given.stride},
+                              in->theta_r + s,
+                              in->phi_r + s,
+                              from_on(in->offset, s),
+                              from_on(in->u_lobe, s),
+                              from_on(in->u_theta, s),
+                              from_on(in->u_phi, s),
+                              from_on(in->theta_i, s),
                               from_on(in->phi_i, s)};
     return rest;
 }
@@ -134,7 +140,8 @@ static inline hair_inputs pad_inputs(few_inputs *few, const hair_inputs *in, int
 }
 
 static void sample_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
-                        const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi, hairlut_samples out)
+                        const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi,
+                        hairlut_samples out)
 {
     const hair_inputs in = {{shares, n}, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, NULL, NULL};
     for (size_t s = 0, m = part_size(n); s < n; s += m, m = part_size(n - s)) {

@@ -8,8 +8,8 @@
 #include "lobe.h"
 
 /* hairlut_lobe_draw */
-static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *u_theta, const float *u_phi,
-                             float *theta_i, float *azimuth, float *pdf)
+static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *u_theta,
+                             const float *u_phi, float *theta_i, float *azimuth, float *pdf)
 {
     draws theta, phi;
     place(&lobe->theta, n, theta_r, u_theta, &theta);
@@ -33,8 +33,8 @@ static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *th
 }
 
 /* hairlut_lobe_begin_search and hairlut_lobe_end_search. azimuth: relative; not read where it is uniform. */
-static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *theta_i, const float *azimuth,
-                                float *pdf)
+static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *theta_i,
+                                const float *azimuth, float *pdf)
 {
     searches theta, phi;
     float contains[BLOCK]; /* 1, or 0 where the lobe's domain does not contain the direction */
@@ -85,7 +85,8 @@ static inline mask is_finite(real x)
 }
 
 /* hairlut_sample_lobe. The last pass reads the inputs of no vector but its own, before it writes there: outputs may be in place. */
-static inline void sample_lobe_block(const hairlut_model *model, int lobe, size_t n, const float *const in[4], hairlut_samples out)
+static inline void sample_lobe_block(const hairlut_model *model, int lobe, size_t n, const float *const in[4],
+                                     hairlut_samples out)
 {
     const hairlut_lobe *l = &model->lobes[lobe];
     float theta_i[BLOCK], azimuth[BLOCK], pdf[BLOCK], valid[BLOCK];

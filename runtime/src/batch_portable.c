@@ -36,12 +36,14 @@ static void pdf_lobe(const hairlut_model *model, int lobe, size_t n, const float
 }
 
 static void sample_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
-                        const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi, hairlut_samples out)
+                        const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi,
+                        hairlut_samples out)
 {
     float own[HAIRLUT_MAX_LOBES];
     for (size_t i = 0; i < n; ++i)
-        put(out, i, hairlut_sample_hair(model, gather(model, shares, n, i, own), theta_r[i], phi_r[i], offset ? offset[i] : 0.0f,
-                                        u_lobe[i], u_theta[i], u_phi[i]));
+        put(out, i,
+            hairlut_sample_hair(model, gather(model, shares, n, i, own), theta_r[i], phi_r[i], offset ? offset[i] : 0.0f,
+                                u_lobe[i], u_theta[i], u_phi[i]));
 }
 
 static void pdf_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
@@ -49,8 +51,8 @@ static void pdf_hair(const hairlut_model *model, size_t n, const float *shares, 
 {
     float own[HAIRLUT_MAX_LOBES];
     for (size_t i = 0; i < n; ++i)
-        pdf_angle[i] = hairlut_pdf_hair(model, gather(model, shares, n, i, own), theta_r[i], phi_r[i], offset ? offset[i] : 0.0f,
-                                        theta_i[i], phi_i[i]);
+        pdf_angle[i] = hairlut_pdf_hair(model, gather(model, shares, n, i, own), theta_r[i], phi_r[i],
+                                        offset ? offset[i] : 0.0f, theta_i[i], phi_i[i]);
 }
 
 const hairlut_batch hairlut_batch_portable = {"portable", sample_lobe, pdf_lobe, sample_hair, pdf_hair};

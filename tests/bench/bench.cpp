@@ -92,11 +92,13 @@ void add_model(const std::string &name, const hairlut_model &model)
 void add_rivals()
 {
     for (int i = 0; const rival *one = rival_at(i); ++i) {
-        const std::pair<const char *, rival_call *> calls[] = {
-            {"sample_direct", one->sample_direct},     {"pdf_direct", one->pdf_direct},
-            {"sample_multiple", one->sample_multiple}, {"pdf_multiple", one->pdf_multiple},
-            {"sample_hair", one->sample_hair},         {"pdf_hair", one->pdf_hair},
-            {"vertex", one->vertex}};
+        const std::pair<const char *, rival_call *> calls[] = {{"sample_direct", one->sample_direct},
+                                                               {"pdf_direct", one->pdf_direct},
+                                                               {"sample_multiple", one->sample_multiple},
+                                                               {"pdf_multiple", one->pdf_multiple},
+                                                               {"sample_hair", one->sample_hair},
+                                                               {"pdf_hair", one->pdf_hair},
+                                                               {"vertex", one->vertex}};
         for (const auto &[name, call] : calls)
             if (call)
                 add(std::string(one->model) + "/" + name + "/" + one->name + "/" + one->how,
@@ -107,9 +109,8 @@ void add_rivals()
 void add_warps(const std::string &how, const bench_warp *warps)
 {
     for (int i = 0; i < BENCH_WARPS; ++i)
-        add(std::string("warp/") + warps[i].name + "/alone/" + how, [map = warps[i].map](const rival_arrays &all) {
-            map(all.n, all.u_theta, all.theta_i);
-        });
+        add(std::string("warp/") + warps[i].name + "/alone/" + how,
+            [map = warps[i].map](const rival_arrays &all) { map(all.n, all.u_theta, all.theta_i); });
 }
 
 // Memory from malloc, of which *user has how much is in use; its size is kept before it
@@ -181,7 +182,7 @@ std::string luts_argument(int &argc, char **argv)
     return directory;
 }
 
-}  // namespace
+} // namespace
 
 int main(int argc, char **argv)
 {

@@ -19,14 +19,15 @@ hairlut_samples outputs(const rival_arrays &all)
 
 void sample_one(const hairlut_model &model, const rival_arrays &all, size_t i)
 {
-    put(all, i, hairlut_sample_hair(&model, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i], all.u_lobe[i], all.u_theta[i],
-                                    all.u_phi[i]));
+    put(all, i,
+        hairlut_sample_hair(&model, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i], all.u_lobe[i], all.u_theta[i],
+                            all.u_phi[i]));
 }
 
 void density_of_one(const hairlut_model &model, const rival_arrays &all, size_t i)
 {
-    all.pdf_light[i] = hairlut_pdf_hair(&model, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i], all.theta_light[i],
-                                        all.phi_light[i]);
+    all.pdf_light[i] =
+        hairlut_pdf_hair(&model, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i], all.theta_light[i], all.phi_light[i]);
 }
 
 void sample_arrays(const hairlut_model &model, const hairlut_batch &kernels, const rival_arrays &all)
@@ -37,18 +38,21 @@ void sample_arrays(const hairlut_model &model, const hairlut_batch &kernels, con
 
 void density_of_arrays(const hairlut_model &model, const hairlut_batch &kernels, const rival_arrays &all)
 {
-    kernels.pdf_hair(&model, all.n, nullptr, all.theta_r, all.phi_r, all.offset, all.theta_light, all.phi_light, all.pdf_light);
+    kernels.pdf_hair(&model, all.n, nullptr, all.theta_r, all.phi_r, all.offset, all.theta_light, all.phi_light,
+                     all.pdf_light);
 }
 
-}  // namespace
+} // namespace
 
 Calls hair_calls(const hairlut_model &model)
 {
-    return {{"sample_hair", [&model](const rival_arrays &all) {
+    return {{"sample_hair",
+             [&model](const rival_arrays &all) {
                  for (size_t i = 0; i < all.n; ++i)
                      sample_one(model, all, i);
              }},
-            {"pdf_hair", [&model](const rival_arrays &all) {
+            {"pdf_hair",
+             [&model](const rival_arrays &all) {
                  for (size_t i = 0; i < all.n; ++i)
                      density_of_one(model, all, i);
              }},
@@ -73,9 +77,11 @@ Calls hair_calls(const hairlut_model &model, const hairlut_batch &kernels)
 Calls lobe_calls(const hairlut_model &model, const std::string &name)
 {
     const int lobe = hairlut_lobe_index(&model, name.c_str());
-    return {{"sample_" + name, [&model, lobe](const rival_arrays &all) {
+    return {{"sample_" + name,
+             [&model, lobe](const rival_arrays &all) {
                  for (size_t i = 0; i < all.n; ++i)
-                     put(all, i, hairlut_sample_lobe(&model, lobe, all.theta_r[i], all.phi_r[i], all.u_theta[i], all.u_phi[i]));
+                     put(all, i,
+                         hairlut_sample_lobe(&model, lobe, all.theta_r[i], all.phi_r[i], all.u_theta[i], all.u_phi[i]));
              }},
             {"pdf_" + name, [&model, lobe](const rival_arrays &all) {
                  for (size_t i = 0; i < all.n; ++i)
@@ -87,12 +93,14 @@ Calls lobe_calls(const hairlut_model &model, const std::string &name)
 Calls lobe_calls(const hairlut_model &model, const std::string &name, const hairlut_batch &kernels)
 {
     const int lobe = hairlut_lobe_index(&model, name.c_str());
-    return {{"sample_" + name, [&, lobe](const rival_arrays &all) {
+    return {{"sample_" + name,
+             [&, lobe](const rival_arrays &all) {
                  kernels.sample_lobe(&model, lobe, all.n, all.theta_r, all.phi_r, all.u_theta, all.u_phi, outputs(all));
              }},
             {"pdf_" + name, [&, lobe](const rival_arrays &all) {
-                 kernels.pdf_lobe(&model, lobe, all.n, all.theta_r, all.phi_r, all.theta_light, all.phi_light, all.pdf_light);
+                 kernels.pdf_lobe(&model, lobe, all.n, all.theta_r, all.phi_r, all.theta_light, all.phi_light,
+                                  all.pdf_light);
              }}};
 }
 
-}  // namespace bench
+} // namespace bench

@@ -27,4 +27,4 @@ Calls hair_calls(const hairlut_model &model, const hairlut_batch &kernels);
 Calls lobe_calls(const hairlut_model &model, const std::string &name);
 Calls lobe_calls(const hairlut_model &model, const std::string &name, const hairlut_batch &kernels);
 
-}  // namespace bench
+} // namespace bench

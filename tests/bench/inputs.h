@@ -12,7 +12,7 @@
 
 namespace bench {
 
-constexpr size_t count = 1 << 12;  // 16 KiB an array: inputs and outputs of a call stay in the second-level cache
+constexpr size_t count = 1 << 12; // 16 KiB an array: inputs and outputs of a call stay in the second-level cache
 
 // Floats that begin where a cache line does, as an engine's arrays would
 template <class T> struct Aligned {
@@ -66,4 +66,4 @@ private:
     rival_arrays view_ = {};
 };
 
-}  // namespace bench
+} // namespace bench

@@ -71,11 +71,11 @@ ONE float octaves(float u)
     return s;
 }
 
-#define OVER_ARRAYS(warp)                                                                                             \
-    static void warp##_n(size_t n, const float *restrict u, float *restrict s)                                        \
-    {                                                                                                                 \
-        for (size_t i = 0; i < n; ++i)                                                                                \
-            s[i] = warp(u[i]);                                                                                        \
+#define OVER_ARRAYS(warp)                                                      \
+    static void warp##_n(size_t n, const float *restrict u, float *restrict s) \
+    {                                                                          \
+        for (size_t i = 0; i < n; ++i)                                         \
+            s[i] = warp(u[i]);                                                 \
     }
 
 OVER_ARRAYS(uniform)
@@ -88,7 +88,12 @@ OVER_ARRAYS(quartic)
 OVER_ARRAYS(octaves)
 
 const bench_warp TABLE[BENCH_WARPS] = {
-    {"uniform", uniform_n},     {"one-sided-power", one_sided_power_n}, {"two-sided-power", two_sided_power_n},
-    {"logit", logit_n},         {"probit", probit_n},                   {"logarithm", logarithm_n},
-    {"quartic", quartic_n},     {"octaves", octaves_n},
+    {"uniform", uniform_n},
+    {"one-sided-power", one_sided_power_n},
+    {"two-sided-power", two_sided_power_n},
+    {"logit", logit_n},
+    {"probit", probit_n},
+    {"logarithm", logarithm_n},
+    {"quartic", quartic_n},
+    {"octaves", octaves_n},
 };

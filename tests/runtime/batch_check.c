@@ -53,9 +53,11 @@ static void add_to_checksum(const float *x, size_t n)
 
 /* ---- inputs: theta_r, phi_r, u_theta, u_phi, offset, u_lobe, then the shares of each lobe ---- */
 
-static const float hard_angles[] = {0.0f,   -0.0f,        1.57079637f, -1.57079637f, 1.5707964f, -1.6f,    3.14159274f, -3.14159274f,
-                                    100.0f, -1e8f,        3e38f,       1e-30f,       7.5f,       INFINITY, -INFINITY,   NAN};
-static const float hard_units[] = {0.0f, -0.0f, 1.0f, 0.5f, 0.50000006f, 0.49999997f, 0.99999994f, 5.96e-8f, 1e-12f, -1.0f, 2.0f, INFINITY, -INFINITY, NAN};
+static const float hard_angles[] = {0.0f,        -0.0f,        1.57079637f, -1.57079637f, 1.5707964f, -1.6f,
+                                    3.14159274f, -3.14159274f, 100.0f,      -1e8f,        3e38f,      1e-30f,
+                                    7.5f,        INFINITY,     -INFINITY,   NAN};
+static const float hard_units[] = {0.0f,     -0.0f,  1.0f,  0.5f, 0.50000006f, 0.49999997f, 0.99999994f,
+                                   5.96e-8f, 1e-12f, -1.0f, 2.0f, INFINITY,    -INFINITY,   NAN};
 static const float hard_shares[] = {0.0f, 0.0f, -0.0f, -1.0f, 1e-45f, 1e-38f, 3e38f, 2e38f, 1e30f, INFINITY, -INFINITY, NAN};
 
 #define PICK(array) array[random_bits() % (sizeof array / sizeof *array)]
@@ -128,7 +130,9 @@ static float *make_nodes(int count, float low, float high)
         nodes[k] += nodes[k - 1];
     const float first = nodes[0], last = nodes[count - 1];
     for (int k = 0; k < count; ++k)
-        nodes[k] = count == 1 ? 0.5f * (low + high) : k == count - 1 ? high : low + (high - low) * ((nodes[k] - first) / (last - first));
+        nodes[k] = count == 1       ? 0.5f * (low + high)
+                   : k == count - 1 ? high
+                                    : low + (high - low) * ((nodes[k] - first) / (last - first));
     return nodes;
 }
 
@@ -146,8 +150,11 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp)
     const size_t nodes = (size_t)(s->rows * s->columns * s->lobes), first = (size_t)(s->rows * s->columns);
     for (int k = 0; k < 2 * s->lobes; ++k) {
         const float low = k % 2 ? 0.0f : -half_pi, high = k % 2 ? two_pi : half_pi;
-        const hairlut_table table = {sizeof table, make_texels(s->width, s->height, low, high), s->width, s->height, -half_pi, half_pi,
-                                     low, high, warp, 1.0f / 262144.0f};
+        const hairlut_table table = {sizeof table, make_texels(s->width, s->height, low, high),
+                                     s->width,     s->height,
+                                     -half_pi,     half_pi,
+                                     low,          high,
+                                     warp,         1.0f / 262144.0f};
         tables[k] = table;
     }
     for (int k = 0; k < s->lobes; ++k) {
@@ -160,7 +167,8 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp)
     float *share = make_floats(nodes, 0.1f, 2.0f, s->zero), *turn = make_floats(nodes, -20.0f, 20.0f, 0.0f);
     for (size_t k = 0; k < first; ++k)
         share[k] += 0.01f; /* one lobe has a share everywhere */
-    const hairlut_mixture_desc mixture = {sizeof mixture, s->rows, s->columns, theta_r, offset, share, s->turned ? turn : NULL, s->mirrored};
+    const hairlut_mixture_desc mixture = {sizeof mixture,          s->rows,    s->columns, theta_r, offset, share,
+                                          s->turned ? turn : NULL, s->mirrored};
     const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture};
     hairlut_model *model = NULL;
     char message[HAIRLUT_MESSAGE_SIZE];
@@ -214,7 +222,7 @@ static float *place_shares(const call *c)
 
 static void one_sample(const call *c, size_t i, float shares[HAIRLUT_MAX_LOBES])
 {
-    float(*in)[MOST] = inputs;
+    float (*in)[MOST] = inputs;
     const float offset = c->has_offset ? in[4][i] : 0.0f;
     const hairlut_sample s =
         c->lobe >= 0 ? hairlut_sample_lobe(c->model, c->lobe, in[0][i], in[1][i], in[2][i], in[3][i])
@@ -226,10 +234,11 @@ static void one_sample(const call *c, size_t i, float shares[HAIRLUT_MAX_LOBES])
 
 static void one_pdf(const call *c, size_t i, float shares[HAIRLUT_MAX_LOBES])
 {
-    float(*in)[MOST] = inputs;
+    float (*in)[MOST] = inputs;
     const float offset = c->has_offset ? in[4][i] : 0.0f;
-    expected_pdf[i] = c->lobe >= 0 ? hairlut_pdf_lobe(c->model, c->lobe, in[0][i], in[1][i], directions[0][i], directions[1][i])
-                                   : hairlut_pdf_hair(c->model, shares, in[0][i], in[1][i], offset, directions[0][i], directions[1][i]);
+    expected_pdf[i] =
+        c->lobe >= 0 ? hairlut_pdf_lobe(c->model, c->lobe, in[0][i], in[1][i], directions[0][i], directions[1][i])
+                     : hairlut_pdf_hair(c->model, shares, in[0][i], in[1][i], offset, directions[0][i], directions[1][i]);
 }
 
 static void one_by_one(const call *c, void (*one)(const call *, size_t, float *))
@@ -329,12 +338,14 @@ static void check_model(const hairlut_batch *batch, const hairlut_model *model, 
 static void check_shapes(const hairlut_batch *batch)
 {
     static const shape shapes[] = {
-        {4, 2, 1, 1, 1, 0, 0, 0.0f},    {5, 3, 2, 1, 1, 0, 1, 0.0f},     {6, 2, 3, 1, 1, 1, 0, 0.0f},      {17, 5, 4, 5, 1, 0, 1, 0.3f},
-        {18, 4, 2, 1, 7, 1, 1, 0.0f},   {19, 3, 16, 3, 4, 1, 1, 0.6f},   {33, 7, 5, 9, 9, 0, 1, 0.2f},     {64, 9, 3, 70, 3, 1, 1, 0.0f},
-        {65, 3, 2, 2, 66, 0, 1, 0.0f},  {66, 3, 2, 64, 65, 1, 0, 0.5f},  {67, 4, 1, 2, 2, 1, 1, 0.0f},     {68, 5, 2, 1, 1, 0, 0, 0.0f},
-        {69, 3, 3, 2, 1, 0, 0, 0.5f},   {70, 4, 2, 1, 2, 1, 0, 0.0f},    {73, 3, 2, 1, 1, 0, 0, 0.0f},     {74, 3, 2, 1, 1, 0, 0, 0.0f},
-        {127, 5, 2, 4, 4, 0, 1, 0.1f},  {256, 4, 2, 1, 1, 1, 1, 0.0f},   {257, 3, 2, 1, 1, 0, 0, 0.0f},    {258, 3, 3, 3, 3, 1, 1, 0.3f},
-        {300, 4, 2, 1, 1, 0, 0, 0.0f},  {514, 3, 2, 1, 1, 0, 0, 0.0f},   {1025, 2, 2, 1, 1, 0, 0, 0.0f},   {4096, 2, 2, 1, 1, 0, 0, 0.0f},
+        {4, 2, 1, 1, 1, 0, 0, 0.0f},    {5, 3, 2, 1, 1, 0, 1, 0.0f},    {6, 2, 3, 1, 1, 1, 0, 0.0f},
+        {17, 5, 4, 5, 1, 0, 1, 0.3f},   {18, 4, 2, 1, 7, 1, 1, 0.0f},   {19, 3, 16, 3, 4, 1, 1, 0.6f},
+        {33, 7, 5, 9, 9, 0, 1, 0.2f},   {64, 9, 3, 70, 3, 1, 1, 0.0f},  {65, 3, 2, 2, 66, 0, 1, 0.0f},
+        {66, 3, 2, 64, 65, 1, 0, 0.5f}, {67, 4, 1, 2, 2, 1, 1, 0.0f},   {68, 5, 2, 1, 1, 0, 0, 0.0f},
+        {69, 3, 3, 2, 1, 0, 0, 0.5f},   {70, 4, 2, 1, 2, 1, 0, 0.0f},   {73, 3, 2, 1, 1, 0, 0, 0.0f},
+        {74, 3, 2, 1, 1, 0, 0, 0.0f},   {127, 5, 2, 4, 4, 0, 1, 0.1f},  {256, 4, 2, 1, 1, 1, 1, 0.0f},
+        {257, 3, 2, 1, 1, 0, 0, 0.0f},  {258, 3, 3, 3, 3, 1, 1, 0.3f},  {300, 4, 2, 1, 1, 0, 0, 0.0f},
+        {514, 3, 2, 1, 1, 0, 0, 0.0f},  {1025, 2, 2, 1, 1, 0, 0, 0.0f}, {4096, 2, 2, 1, 1, 0, 0, 0.0f},
     };
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; ++k) {
         hairlut_model *model = make_model(&shapes[k], k % 4 == 3 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES);
@@ -345,7 +356,8 @@ static void check_shapes(const hairlut_batch *batch)
 
 int main(void)
 {
-    const hairlut_batch public_set = {"public", hairlut_sample_lobe_n, hairlut_pdf_lobe_n, hairlut_sample_hair_n, hairlut_pdf_hair_n};
+    const hairlut_batch public_set = {"public", hairlut_sample_lobe_n, hairlut_pdf_lobe_n, hairlut_sample_hair_n,
+                                      hairlut_pdf_hair_n};
     const hairlut_batch *sets[8] = {&public_set};
     int count = 1;
     for (int level = 0; hairlut_batch_level(level); ++level)

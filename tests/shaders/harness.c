@@ -9,16 +9,17 @@ enum { INPUTS = 12, OUTPUTS = 20 };
 /* texels[k], sizes[3k]: width, height, warp, numbers[5k]: theta_r_min, theta_r_max, domain_min, domain_max, e of table k; lobes[3k]:
  * table of theta, of phi (-1: none), and azimuth of lobe k; grid: nodes of theta_r, of the offset, mirrored. NULL if the library
  * refuses the model. The process ends soon: nobody frees it. */
-const hairlut_model *create(int table_count, const float *const *texels, const int *sizes, const float *numbers, int lobe_count,
-                            const int *lobes, const int *grid, const float *theta_r, const float *offset, const float *share,
-                            const float *turn, char *message)
+const hairlut_model *create(int table_count, const float *const *texels, const int *sizes, const float *numbers,
+                            int lobe_count, const int *lobes, const int *grid, const float *theta_r, const float *offset,
+                            const float *share, const float *turn, char *message)
 {
     static const char *const names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "o", "p"};
     hairlut_table tables[2 * HAIRLUT_MAX_LOBES];
     hairlut_lobe_desc descs[HAIRLUT_MAX_LOBES];
     for (int k = 0; k < table_count; ++k, sizes += 3, numbers += 5)
-        tables[k] = (hairlut_table){sizeof *tables, texels[k],  sizes[0],   sizes[1], numbers[0], numbers[1], numbers[2], numbers[3],
-                                    (hairlut_warp)sizes[2], numbers[4]};
+        tables[k] = (hairlut_table){
+            sizeof *tables,         texels[k], sizes[0], sizes[1], numbers[0], numbers[1], numbers[2], numbers[3],
+            (hairlut_warp)sizes[2], numbers[4]};
     for (int k = 0; k < lobe_count; ++k, lobes += 3)
         descs[k] = (hairlut_lobe_desc){sizeof *descs, names[k], &tables[lobes[0]], lobes[1] < 0 ? NULL : &tables[lobes[1]],
                                        (hairlut_azimuth)lobes[2]};

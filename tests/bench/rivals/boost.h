@@ -13,6 +13,6 @@ struct Boost {
     static float erf_inverse(float x) { return boost::math::erf_inv(x, policy()); }
 };
 
-}  // namespace
+} // namespace
 
 #endif

@@ -88,6 +88,6 @@ constexpr rival box_muller_calls()
     return all;
 }
 
-}  // namespace
+} // namespace
 
 #endif

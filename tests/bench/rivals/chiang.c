@@ -19,8 +19,8 @@ enum { LOBES = 4 };
 static const float eta = 1.55f, absorption = 0.6f;
 static struct constants {
     float v[LOBES], inverse_v[LOBES], ends[LOBES], norm[LOBES]; /* of M_p: its variance, 1/v, exp(-2/v), its normalisation */
-    float tilt_sin[LOBES], tilt_cos[LOBES];                    /* of the cuticle's scales, for each p */
-    float s, inverse_s, below, inside;                         /* of N_p: its scale, and its CDF at -pi and from -pi to pi */
+    float tilt_sin[LOBES], tilt_cos[LOBES];                     /* of the cuticle's scales, for each p */
+    float s, inverse_s, below, inside; /* of N_p: its scale, and its CDF at -pi and from -pi to pi */
 } hair;
 
 static double power(double x, int n)
@@ -42,7 +42,8 @@ __attribute__((constructor)) static void prepare(void)
         hair.tilt_sin[p] = (float)sin(tilt[p]);
         hair.tilt_cos[p] = (float)cos(tilt[p]);
     }
-    const double s = sqrt(3.14159265358979 / 8.0) * (0.265 * beta_n + 1.194 * beta_n * beta_n + 5.372 * power(beta_n, 22)); /* eq. 8 */
+    const double s =
+        sqrt(3.14159265358979 / 8.0) * (0.265 * beta_n + 1.194 * beta_n * beta_n + 5.372 * power(beta_n, 22)); /* eq. 8 */
     const double below = 1.0 / (1.0 + exp(3.14159265358979 / s));
     hair.s = (float)s;
     hair.inverse_s = (float)(1.0 / s);
@@ -61,7 +62,8 @@ typedef struct viewer {
 static inline float fresnel(float c)
 {
     const float refracted = sqrtf(1.0f - (1.0f - c * c) * (1.0f / (eta * eta)));
-    const float parallel = (eta * c - refracted) / (eta * c + refracted), across = (c - eta * refracted) / (c + eta * refracted);
+    const float parallel = (eta * c - refracted) / (eta * c + refracted),
+                across = (c - eta * refracted) / (c + eta * refracted);
     return 0.5f * (parallel * parallel + across * across);
 }
 
@@ -106,7 +108,8 @@ static inline int large(float x)
 static inline float bessel_small(float x)
 {
     const float t = x * x * (1.0f / 14.0625f);
-    return 1.0f + t * (3.5156229f + t * (3.0899424f + t * (1.2067492f + t * (0.2659732f + t * (0.0360768f + t * 0.0045813f)))));
+    return 1.0f +
+           t * (3.5156229f + t * (3.0899424f + t * (1.2067492f + t * (0.2659732f + t * (0.0360768f + t * 0.0045813f)))));
 }
 
 static inline float bessel_large(float x)
@@ -177,7 +180,8 @@ RIVAL_ONE static direction sample_hair(float theta_r, float phi_r, float h, floa
     const float left = (u_lobe - (p == 0 ? 0.0f : p == 1 ? c1 : p == 2 ? c2 : c3)) / PICK(at.chance);
     /* M_p by d'Eon's method */
     const float v = PICK(hair.v), ends = PICK(hair.ends);
-    const float along = 1.0f + v * logf(u_theta + (1.0f - u_theta) * ends), across = sqrtf(fmaxf(0.0f, 1.0f - along * along));
+    const float along = 1.0f + v * logf(u_theta + (1.0f - u_theta) * ends),
+                across = sqrtf(fmaxf(0.0f, 1.0f - along * along));
     float sine_i = across * cosf(2.0f * PI * u_phi) * PICK(at.cosine) - along * PICK(at.sine);
     sine_i = sine_i < 1.0f ? sine_i : 1.0f;
     sine_i = sine_i > -1.0f ? sine_i : -1.0f;
@@ -217,20 +221,21 @@ static void samples(const rival_arrays *arrays)
 {
     const rival_arrays all = *arrays;
     RIVAL_EACH(i, all.n)
-        SAMPLE(i);
+    SAMPLE(i);
 }
 
 static void densities(const rival_arrays *arrays)
 {
     const rival_arrays all = *arrays;
     RIVAL_EACH(i, all.n)
-        DENSITY(i);
+    DENSITY(i);
 }
 
 static void vertex(const rival_arrays *arrays)
 {
     const rival_arrays all = *arrays;
-    RIVAL_EACH(i, all.n) {
+    RIVAL_EACH(i, all.n)
+    {
         SAMPLE(i);
         DENSITY(i);
     }

@@ -129,6 +129,6 @@ template <class Curve> struct Tabulated {
 
 template <class Curve> const Tabulated<Curve> Tabulated<Curve>::table;
 
-}  // namespace
+} // namespace
 
 #endif

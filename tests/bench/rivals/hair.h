@@ -67,8 +67,8 @@ template <class Rows, class Curve> struct Hair {
 
     static float pdf_direct(float theta_r, float phi_r, float theta_i, float phi_i)
     {
-        return density_of<Curve>(Rows::template row<direct_theta>(theta_r), theta_i)
-               * density_of<Curve>(Rows::template row<direct_phi>(theta_r), relative(phi_r, phi_i));
+        return density_of<Curve>(Rows::template row<direct_theta>(theta_r), theta_i) *
+               density_of<Curve>(Rows::template row<direct_phi>(theta_r), relative(phi_r, phi_i));
     }
 
     static Sample sample_multiple(float theta_r, float, float u_theta, float u_phi)
@@ -85,8 +85,8 @@ template <class Rows, class Curve> struct Hair {
 
     static float pdf_hair(float theta_r, float phi_r, float theta_i, float phi_i)
     {
-        return share * pdf_direct(theta_r, phi_r, theta_i, phi_i)
-               + (1.0f - share) * pdf_multiple(theta_r, phi_r, theta_i, phi_i);
+        return share * pdf_direct(theta_r, phi_r, theta_i, phi_i) +
+               (1.0f - share) * pdf_multiple(theta_r, phi_r, theta_i, phi_i);
     }
 
 #ifdef RIVAL_ARRAYS_WIDTH
@@ -96,14 +96,18 @@ template <class Rows, class Curve> struct Hair {
         const Row first = Rows::template row<direct_theta>(theta_r), phi = Rows::template row<direct_phi>(theta_r);
         const Row second = Rows::template row<multiple_theta>(theta_r);
         const bool direct = u_lobe < share;
-        const Row theta = {direct ? first.mean : second.mean, direct ? first.width : second.width,
-                           direct ? first.start : second.start, direct ? first.span : second.span, first.low, first.high};
+        const Row theta = {direct ? first.mean : second.mean,
+                           direct ? first.width : second.width,
+                           direct ? first.start : second.start,
+                           direct ? first.span : second.span,
+                           first.low,
+                           first.high};
         const float theta_i = angle(theta, Curve::inverse(value(theta, u_theta)));
         const float drawn = angle(phi, Curve::inverse(value(phi, u_phi)));
         const float phi_i = direct ? turned(phi_r, drawn) : 2.0f * pi * u_phi - pi;
         return sample_of(theta_i, phi_i,
-                         share * density_of<Curve>(first, theta_i) * density_of<Curve>(phi, relative(phi_r, phi_i))
-                             + (1.0f - share) * uniform_azimuth * density_of<Curve>(second, theta_i));
+                         share * density_of<Curve>(first, theta_i) * density_of<Curve>(phi, relative(phi_r, phi_i)) +
+                             (1.0f - share) * uniform_azimuth * density_of<Curve>(second, theta_i));
     }
 #else
     static Sample sample_hair(float theta_r, float phi_r, float u_lobe, float u_theta, float u_phi)
@@ -111,8 +115,8 @@ template <class Rows, class Curve> struct Hair {
         if (u_lobe < share) {
             const Sample drawn = sample_direct(theta_r, phi_r, u_theta, u_phi);
             return sample_of(drawn.theta_i, drawn.phi_i,
-                             share * drawn.pdf_angle
-                                 + (1.0f - share) * pdf_multiple(theta_r, phi_r, drawn.theta_i, drawn.phi_i));
+                             share * drawn.pdf_angle +
+                                 (1.0f - share) * pdf_multiple(theta_r, phi_r, drawn.theta_i, drawn.phi_i));
         }
         const Sample drawn = sample_multiple(theta_r, phi_r, u_theta, u_phi);
         return sample_of(drawn.theta_i, drawn.phi_i,
@@ -121,6 +125,6 @@ template <class Rows, class Curve> struct Hair {
 #endif
 };
 
-}  // namespace
+} // namespace
 
 #endif

@@ -19,13 +19,15 @@ extern "C" const rival *rival_at(int index)
 #if defined(__x86_64__) || defined(__i386__)
     /* without AVX-512, arrays of that width are the narrower ones by another name */
     const bool wide = __builtin_cpu_supports("avx512f");
-    const rival *arrays[] = {rivals_arrays256, chiang_arrays256, wide ? rivals_arrays512 : nullptr, wide ? chiang_arrays512 : nullptr};
+    const rival *arrays[] = {rivals_arrays256, chiang_arrays256, wide ? rivals_arrays512 : nullptr,
+                             wide ? chiang_arrays512 : nullptr};
 #else
     const rival *arrays[] = {rivals_arrays128, chiang_arrays128};
 #endif
-    const rival *lists[] = {rivals_one, rivals_native, chiang_one, chiang_native,
+    const rival *lists[] = {
+        rivals_one, rivals_native, chiang_one, chiang_native,
 #ifdef HAVE_MKL
-                            rivals_mkl,
+        rivals_mkl,
 #endif
     };
     for (const rival *list : arrays)

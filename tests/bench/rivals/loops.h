@@ -60,7 +60,8 @@ template <class Hair> void vertex(const rival_arrays *arrays)
     const rival_arrays all = *arrays;
     RIVAL_EACH(i, all.n)
     {
-        put(all, i, Three<Hair::sample_hair>::call(all.theta_r[i], all.phi_r[i], all.u_lobe[i], all.u_theta[i], all.u_phi[i]));
+        put(all, i,
+            Three<Hair::sample_hair>::call(all.theta_r[i], all.phi_r[i], all.u_lobe[i], all.u_theta[i], all.u_phi[i]));
         all.pdf_light[i] = Density<Hair::pdf_hair>::call(all.theta_r[i], all.phi_r[i], all.theta_light[i], all.phi_light[i]);
     }
 }
@@ -79,6 +80,6 @@ template <class Hair> constexpr rival calls(const char *name)
             vertex<Hair>};
 }
 
-}  // namespace
+} // namespace
 
 #endif

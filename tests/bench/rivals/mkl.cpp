@@ -78,8 +78,9 @@ void sample_multiple(const rival_arrays *all)
         theta.fill(m, all->theta_r + s);
         invert(m, [](int i) { return theta[i]; }, all->u_theta + s, z);
         RIVAL_EACH(i, (size_t)m)
-        put(*all, s + i, sample_of(angle(theta[(int)i], z[i]), 2.0f * pi * all->u_phi[s + i] - pi,
-                                   density_at<Curve>(theta[(int)i], z[i]) * uniform_azimuth));
+        put(*all, s + i,
+            sample_of(angle(theta[(int)i], z[i]), 2.0f * pi * all->u_phi[s + i] - pi,
+                      density_at<Curve>(theta[(int)i], z[i]) * uniform_azimuth));
     });
 }
 
@@ -91,8 +92,8 @@ void pdf_direct(const rival_arrays *all)
         theta.fill(m, all->theta_r + s);
         phi.fill(m, all->theta_r + s);
         RIVAL_EACH(i, (size_t)m)
-        all->pdf_light[s + i] = density_of<Curve>(theta[(int)i], all->theta_light[s + i])
-                                * density_of<Curve>(phi[(int)i], relative(all->phi_r[s + i], all->phi_light[s + i]));
+        all->pdf_light[s + i] = density_of<Curve>(theta[(int)i], all->theta_light[s + i]) *
+                                density_of<Curve>(phi[(int)i], relative(all->phi_r[s + i], all->phi_light[s + i]));
     });
 }
 
@@ -120,8 +121,8 @@ struct HairRows {
     }
     float density(int i, float phi_r, float theta_i, float phi_i) const
     {
-        return share * density_of<Curve>(first[i], theta_i) * density_of<Curve>(phi[i], relative(phi_r, phi_i))
-               + (1.0f - share) * uniform_azimuth * density_of<Curve>(second[i], theta_i);
+        return share * density_of<Curve>(first[i], theta_i) * density_of<Curve>(phi[i], relative(phi_r, phi_i)) +
+               (1.0f - share) * uniform_azimuth * density_of<Curve>(second[i], theta_i);
     }
 };
 
@@ -136,7 +137,8 @@ void sample_block(const rival_arrays *arrays, const HairRows &rows, size_t s, in
     {
         const int i = (int)k;
         const Row first = rows.first[i], second = rows.second[i];
-        const float mean = u_lobe[k] < share ? first.mean : second.mean, width = u_lobe[k] < share ? first.width : second.width;
+        const float mean = u_lobe[k] < share ? first.mean : second.mean,
+                    width = u_lobe[k] < share ? first.width : second.width;
         const float theta_i = angle({mean, width, 0.0f, 0.0f, first.low, first.high}, z_theta[k]);
         const float phi_r = all.phi_r[s + k], drawn = turned(phi_r, angle(rows.phi[i], z_phi[k]));
         const float phi_i = u_lobe[k] < share ? drawn : 2.0f * pi * all.u_phi[s + k] - pi;
@@ -177,7 +179,7 @@ void vertex(const rival_arrays *all)
     });
 }
 
-}  // namespace
+} // namespace
 
 extern "C" const rival rivals_mkl[] = {
     {"fitted", "MKL", "arrays", sample_direct, pdf_direct, sample_multiple, pdf_multiple, sample_hair, pdf_hair, vertex},

@@ -14,12 +14,12 @@ extern "C" {
 /* n numbers in each array. The models that have no offsets do not read `offset`. */
 typedef struct rival_arrays {
     size_t n;
-    const float *theta_r, *phi_r, *offset;      /* the viewer direction; where the fibre is hit */
-    const float *u_lobe, *u_theta, *u_phi;      /* random numbers in [0, 1) */
-    const float *theta_light, *phi_light;       /* a direction that another strategy drew */
-    float *theta_i, *phi_i;                     /* the sample */
-    float *pdf_angle, *pdf_solid_angle;         /* its densities, per rad^2 and per steradian */
-    float *pdf_light;                           /* density of (theta_light, phi_light), per rad^2 */
+    const float *theta_r, *phi_r, *offset; /* the viewer direction; where the fibre is hit */
+    const float *u_lobe, *u_theta, *u_phi; /* random numbers in [0, 1) */
+    const float *theta_light, *phi_light;  /* a direction that another strategy drew */
+    float *theta_i, *phi_i;                /* the sample */
+    float *pdf_angle, *pdf_solid_angle;    /* its densities, per rad^2 and per steradian */
+    float *pdf_light;                      /* density of (theta_light, phi_light), per rad^2 */
 } rival_arrays;
 
 typedef void rival_call(const rival_arrays *);

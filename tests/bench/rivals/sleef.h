@@ -23,6 +23,6 @@ struct Sleef {
     static float erf_inverse(float x) { return giles(x); }
 };
 
-}  // namespace
+} // namespace
 
 #endif

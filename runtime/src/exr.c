@@ -43,12 +43,14 @@ static hairlut_result check_member(model_files *files, int k)
     hairlut_exr_name(&file, files->path, files->message);
     if (strcmp(table->model, model) != 0)
         return hairlut_exr_fail(&file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "hairlut.model is '%s': expected '%s', as in the files beside it; bake the model again", table->model, model);
+                                "hairlut.model is '%s': expected '%s', as in the files beside it; bake the model again",
+                                table->model, model);
     if (files->format > 1 && table->digest != files->references[k]->digest)
-        return hairlut_exr_fail(&file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "hairlut.digest is 'crc32 %08lx': expected 'crc32 %08lx', as in mixture.exr beside it: the files are of "
-                                "different bakes; bake the model again",
-                                (unsigned long)table->digest, (unsigned long)files->references[k]->digest);
+        return hairlut_exr_fail(
+            &file, HAIRLUT_ERROR_ATTRIBUTE,
+            "hairlut.digest is 'crc32 %08lx': expected 'crc32 %08lx', as in mixture.exr beside it: the files are of "
+            "different bakes; bake the model again",
+            (unsigned long)table->digest, (unsigned long)files->references[k]->digest);
     return HAIRLUT_OK;
 }
 
@@ -82,7 +84,8 @@ static hairlut_result read_tables(model_files *files)
 static hairlut_result read_files(model_files *files)
 {
     char no_mixture[HAIRLUT_MESSAGE_SIZE] = "";
-    hairlut_result result = hairlut_exr_read_mixture(set_path(files, "mixture"), NULL, files->allocator, &files->mixture, no_mixture);
+    hairlut_result result =
+        hairlut_exr_read_mixture(set_path(files, "mixture"), NULL, files->allocator, &files->mixture, no_mixture);
     files->format = files->mixture.missing ? 1 : 2;
     if (files->format == 1)
         describe_format_1(&files->mixture);
@@ -113,7 +116,8 @@ static hairlut_result create(model_files *files, hairlut_model **out)
                                         phi ? phi->azimuth : HAIRLUT_AZIMUTH_DIFFERENCE};
         lobes[k] = desc;
     }
-    const hairlut_model_desc desc = {sizeof desc, files->mixture.lobe_count, lobes, files->format == 1 ? NULL : &files->mixture.desc};
+    const hairlut_model_desc desc = {sizeof desc, files->mixture.lobe_count, lobes,
+                                     files->format == 1 ? NULL : &files->mixture.desc};
     char detail[HAIRLUT_MESSAGE_SIZE];
     const hairlut_result result = hairlut_model_create(&desc, files->allocator, out, detail);
     if (result == HAIRLUT_OK)
@@ -146,7 +150,8 @@ static hairlut_result load(const char *directory, const hairlut_allocator *alloc
     return result;
 }
 
-hairlut_result hairlut_load_with(const char *directory, const hairlut_allocator *allocator, hairlut_model **out, char *message)
+hairlut_result hairlut_load_with(const char *directory, const hairlut_allocator *allocator, hairlut_model **out,
+                                 char *message)
 {
     if (!out)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "out is NULL");

@@ -33,8 +33,8 @@ static uint32_t little_endian(const unsigned char *bytes)
     return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
 
-/* An attribute is a name and a type, each ended by a zero, four bytes of size, and as many of value; an empty name ends a header.
- * Names are at most 255 bytes. */
+/* An attribute is a name and a type, each ended by a zero, four bytes of size, and as many of value; an empty name ends a
+ * header. Names are at most 255 bytes. */
 enum { HEADER_FROM = 8, NAME = 256, VALUE_SIZE = 4 };
 static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
 
@@ -81,8 +81,8 @@ int hairlut_exr_named_compression(const char *path, const exr_context_initialize
 
 int hairlut_exr_is_allowed(int compression)
 {
-    return compression == EXR_COMPRESSION_NONE || compression == EXR_COMPRESSION_RLE || compression == EXR_COMPRESSION_ZIPS
-           || compression == EXR_COMPRESSION_ZIP;
+    return compression == EXR_COMPRESSION_NONE || compression == EXR_COMPRESSION_RLE ||
+           compression == EXR_COMPRESSION_ZIPS || compression == EXR_COMPRESSION_ZIP;
 }
 
 const char *hairlut_exr_compression_name(int compression)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The compression that a file's header names, read from its bytes. An OpenEXR library that does not know it puts another in its
- * place, and would decode what was never compressed so. */
+/* The compression that a file's header names, read from its bytes. An OpenEXR library that does not know it puts another
+ * in its place, and would decode what was never compressed so. */
 #ifndef HAIRLUT_EXR_COMPRESSION_H
 #define HAIRLUT_EXR_COMPRESSION_H
 

@@ -27,11 +27,13 @@ static void show(char shown[61], hairlut_exr_text text)
     shown[length] = '\0';
 }
 
-hairlut_result hairlut_exr_fail_text(const hairlut_exr_file *file, const char *attribute, hairlut_exr_text text, const char *expected)
+hairlut_result hairlut_exr_fail_text(const hairlut_exr_file *file, const char *attribute, hairlut_exr_text text,
+                                     const char *expected)
 {
     char shown[61];
     show(shown, text);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is '%s': expected %s; bake the model again", attribute, shown, expected);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is '%s': expected %s; bake the model again", attribute, shown,
+                            expected);
 }
 
 /* OpenEXR prints to stderr unless it is given somewhere else to report to; its codes say enough. */
@@ -48,7 +50,8 @@ static hairlut_result fail_exr(const hairlut_exr_file *file, exr_result_t code, 
     const char *reason = exr_get_default_error_message(code);
     if (code == EXR_ERR_OUT_OF_MEMORY)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_MEMORY, "%s: %s", what, reason);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "%s: %s: expected a whole OpenEXR image; bake the model again", what, reason);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "%s: %s: expected a whole OpenEXR image; bake the model again", what,
+                            reason);
 }
 
 void hairlut_exr_name(hairlut_exr_file *file, const char *path, char *message)
@@ -68,7 +71,8 @@ static hairlut_result check_compression(const hairlut_exr_file *file, int compre
 {
     if (hairlut_exr_is_allowed(compression))
         return HAIRLUT_OK;
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_UNSUPPORTED, "compression is %s (number %d): expected NONE, RLE, ZIPS or ZIP; write it with ZIP",
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_UNSUPPORTED,
+                            "compression is %s (number %d): expected NONE, RLE, ZIPS or ZIP; write it with ZIP",
                             hairlut_exr_compression_name(compression), compression);
 }
 
@@ -78,14 +82,15 @@ static hairlut_result check_parts(const hairlut_exr_file *file)
     exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
     exr_result_t code = exr_get_count(file->context, &parts);
     if (code == EXR_ERR_SUCCESS && parts != 1)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "it has %d parts: expected one; write each table to its own file",
-                                parts);
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                "it has %d parts: expected one; write each table to its own file", parts);
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_storage(file->context, 0, &storage);
     if (code != EXR_ERR_SUCCESS)
         return fail_exr(file, code, "header");
     if (storage != EXR_STORAGE_SCANLINE)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "type is %s: expected scanlines; write it without tiles or deep data",
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                "type is %s: expected scanlines; write it without tiles or deep data",
                                 storage == EXR_STORAGE_TILED ? "tiled" : "deep");
     exr_compression_t compression = EXR_COMPRESSION_LAST_TYPE;
     code = exr_get_compression(file->context, 0, &compression);
@@ -101,12 +106,14 @@ static hairlut_result check_windows(hairlut_exr_file *file)
     if (code != EXR_ERR_SUCCESS)
         return fail_exr(file, code, "dataWindow");
     if (data.min.x != 0 || data.min.y != 0)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "dataWindow starts at (%d, %d): expected (0, 0); do not crop the file",
-                                data.min.x, data.min.y);
-    if (display.min.x != 0 || display.min.y != 0 || display.max.x != data.max.x || display.max.y != data.max.y)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "displayWindow is (%d, %d) to (%d, %d): expected the dataWindow, (0, 0) to (%d, %d); do not crop the file",
-                                display.min.x, display.min.y, display.max.x, display.max.y, data.max.x, data.max.y);
+                                "dataWindow starts at (%d, %d): expected (0, 0); do not crop the file", data.min.x,
+                                data.min.y);
+    if (display.min.x != 0 || display.min.y != 0 || display.max.x != data.max.x || display.max.y != data.max.y)
+        return hairlut_exr_fail(
+            file, HAIRLUT_ERROR_ATTRIBUTE,
+            "displayWindow is (%d, %d) to (%d, %d): expected the dataWindow, (0, 0) to (%d, %d); do not crop the file",
+            display.min.x, display.min.y, display.max.x, display.max.y, data.max.x, data.max.y);
     file->width = data.max.x < HAIRLUT_EXR_LARGEST_SIDE ? data.max.x + 1 : HAIRLUT_EXR_LARGEST_SIDE + 1;
     file->height = data.max.y < HAIRLUT_EXR_LARGEST_SIDE ? data.max.y + 1 : HAIRLUT_EXR_LARGEST_SIDE + 1;
     return HAIRLUT_OK;
@@ -120,9 +127,9 @@ static hairlut_exr_text text_of(const char *begin, int32_t length)
 
 static int is_text(const exr_attribute_t *attribute)
 {
-    return hairlut_exr_is_utf8(text_of(attribute->name, attribute->name_length))
-           && (attribute->type != EXR_ATTR_STRING || attribute->string->length == 0
-               || hairlut_exr_is_utf8(text_of(attribute->string->str, attribute->string->length)));
+    return hairlut_exr_is_utf8(text_of(attribute->name, attribute->name_length)) &&
+           (attribute->type != EXR_ATTR_STRING || attribute->string->length == 0 ||
+            hairlut_exr_is_utf8(text_of(attribute->string->str, attribute->string->length)));
 }
 
 /* Also of attributes that this library does not read. */
@@ -137,7 +144,8 @@ static hairlut_result check_text(const hairlut_exr_file *file)
             break;
         if (!is_text(attribute))
             return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                    "attribute number %d: expected text in UTF-8, in an OpenEXR image; bake the model again", (int)k);
+                                    "attribute number %d: expected text in UTF-8, in an OpenEXR image; bake the model again",
+                                    (int)k);
     }
     return code == EXR_ERR_SUCCESS ? HAIRLUT_OK : fail_exr(file, code, "header");
 }
@@ -146,8 +154,9 @@ hairlut_result hairlut_exr_check_size(const hairlut_exr_file *file, int least_wi
 {
     const int most = HAIRLUT_EXR_LARGEST_SIDE;
     if (file->width < least_width || file->height < least_height || file->width > most || file->height > most)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE, "size is %d x %d%s: expected %d x %d to %d x %d; bake the model again",
-                                file->width, file->height, file->width > most || file->height > most ? " or more" : "", least_width,
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE,
+                                "size is %d x %d%s: expected %d x %d to %d x %d; bake the model again", file->width,
+                                file->height, file->width > most || file->height > most ? " or more" : "", least_width,
                                 least_height, most, most);
     return HAIRLUT_OK;
 }
@@ -163,7 +172,8 @@ hairlut_result hairlut_exr_open(hairlut_exr_file *file, const char *path, const 
     const exr_result_t code = exr_start_read(&file->context, path, &initializer);
     file->missing = code == EXR_ERR_FILE_ACCESS;
     if (file->missing)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE, "cannot be opened: expected a file; check the directory, or bake the model");
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_FILE,
+                                "cannot be opened: expected a file; check the directory, or bake the model");
     const int named = hairlut_exr_named_compression(path, source);
     hairlut_result result = named >= 0 ? check_compression(file, named) : HAIRLUT_OK;
     if (result != HAIRLUT_OK)
@@ -184,12 +194,14 @@ void hairlut_exr_close(hairlut_exr_file *file)
 
 /* ---- attributes ----------------------------------------------------------------------------------------------- */
 
-static hairlut_result fail_attribute(const hairlut_exr_file *file, exr_result_t code, const char *attribute, const char *type)
+static hairlut_result fail_attribute(const hairlut_exr_file *file, exr_result_t code, const char *attribute,
+                                     const char *type)
 {
     if (code == EXR_ERR_NO_ATTR_BY_NAME)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is missing: expected a %s attribute; bake the model again",
-                                attribute, type);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is not a %s attribute, as expected; bake the model again", attribute, type);
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                "%s is missing: expected a %s attribute; bake the model again", attribute, type);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is not a %s attribute, as expected; bake the model again",
+                            attribute, type);
 }
 
 hairlut_result hairlut_exr_int(const hairlut_exr_file *file, const char *attribute, int *value)
@@ -236,11 +248,12 @@ hairlut_result hairlut_exr_expect_format(const hairlut_exr_file *file, int forma
     if (result != HAIRLUT_OK || found == format)
         return result;
     if (found > NEWEST)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_VERSION,
-                                "hairlut.format is %d: expected at most %d; use a newer hairlut library, or bake the model again", found,
-                                (int)NEWEST);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "hairlut.format is %d: expected %d, %s; bake the model again", found, format,
-                            why);
+        return hairlut_exr_fail(
+            file, HAIRLUT_ERROR_VERSION,
+            "hairlut.format is %d: expected at most %d; use a newer hairlut library, or bake the model again", found,
+            (int)NEWEST);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "hairlut.format is %d: expected %d, %s; bake the model again",
+                            found, format, why);
 }
 
 hairlut_result hairlut_exr_model(const hairlut_exr_file *file, char model[HAIRLUT_EXR_MODEL_SIZE])
@@ -270,10 +283,11 @@ hairlut_result hairlut_exr_check_digest(const hairlut_exr_file *file, const floa
         return hairlut_exr_fail_text(file, "hairlut.digest", text, "'crc32 ' and 8 lower-case hexadecimal digits");
     *digest = hairlut_exr_digest(texels, count);
     if (*digest != named)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "hairlut.digest is 'crc32 %08lx', but that of the texels is 'crc32 %08lx': expected texels as they were "
-                                "written, not turned, mirrored or changed; bake the model again",
-                                (unsigned long)named, (unsigned long)*digest);
+        return hairlut_exr_fail(
+            file, HAIRLUT_ERROR_ATTRIBUTE,
+            "hairlut.digest is 'crc32 %08lx', but that of the texels is 'crc32 %08lx': expected texels as they were "
+            "written, not turned, mirrored or changed; bake the model again",
+            (unsigned long)named, (unsigned long)*digest);
     return HAIRLUT_OK;
 }
 
@@ -291,10 +305,12 @@ static int place_of(const char *name, const char *const *names, int count)
 static hairlut_result check_channel(const hairlut_exr_file *file, const exr_attr_chlist_entry_t *channel)
 {
     if (channel->pixel_type != EXR_PIXEL_FLOAT)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channel %.60s is %s: expected 32-bit float; do not convert the file",
-                                channel->name.str, channel->pixel_type == EXR_PIXEL_HALF ? "half" : "uint");
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                "channel %.60s is %s: expected 32-bit float; do not convert the file", channel->name.str,
+                                channel->pixel_type == EXR_PIXEL_HALF ? "half" : "uint");
     if (channel->x_sampling != 1 || channel->y_sampling != 1)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channel %.60s is sampled %d x %d: expected 1 x 1; do not convert the file",
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                "channel %.60s is sampled %d x %d: expected 1 x 1; do not convert the file",
                                 channel->name.str, channel->x_sampling, channel->y_sampling);
     return HAIRLUT_OK;
 }
@@ -310,8 +326,10 @@ hairlut_result hairlut_exr_check_channels(const hairlut_exr_file *file, const ch
         const exr_attr_chlist_entry_t *channel = &channels->entries[k];
         const int place = place_of(channel->name.str, names, count);
         if (place < 0)
-            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channels: there is one named '%.60s': expected %d, from '%s' on; "
-                                    "do not repack the file", channel->name.str, count, names[0]);
+            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                    "channels: there is one named '%.60s': expected %d, from '%s' on; "
+                                    "do not repack the file",
+                                    channel->name.str, count, names[0]);
         const hairlut_result result = check_channel(file, channel);
         if (result != HAIRLUT_OK)
             return result;
@@ -319,8 +337,10 @@ hairlut_result hairlut_exr_check_channels(const hairlut_exr_file *file, const ch
     }
     for (int k = 0; k < count; ++k)
         if (!(found >> k & 1))
-            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "channels: there is none named '%s': expected %d, from '%s' on; "
-                                    "do not repack the file", names[k], count, names[0]);
+            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                    "channels: there is none named '%s': expected %d, from '%s' on; "
+                                    "do not repack the file",
+                                    names[k], count, names[0]);
     return HAIRLUT_OK;
 }
 
@@ -332,8 +352,8 @@ typedef struct target {
 } target;
 
 /* Aims the decoder at the texels of one chunk of rows. */
-static exr_result_t aim(const hairlut_exr_file *file, exr_decode_pipeline_t *decoder, const exr_chunk_info_t *chunk, int first,
-                        const target *to)
+static exr_result_t aim(const hairlut_exr_file *file, exr_decode_pipeline_t *decoder, const exr_chunk_info_t *chunk,
+                        int first, const target *to)
 {
     exr_result_t code = first ? exr_decoding_initialize(file->context, 0, chunk, decoder)
                               : exr_decoding_update(file->context, 0, chunk, decoder);
@@ -359,8 +379,8 @@ hairlut_result hairlut_exr_pixels(const hairlut_exr_file *file, const char *cons
     for (int y = 0; y < file->height && code == EXR_ERR_SUCCESS;) {
         exr_chunk_info_t chunk;
         code = exr_read_scanline_chunk_info(file->context, 0, y, &chunk);
-        if (code == EXR_ERR_SUCCESS && (chunk.start_y != y || chunk.width != file->width || chunk.height < 1
-                                        || chunk.height > file->height - y))
+        if (code == EXR_ERR_SUCCESS &&
+            (chunk.start_y != y || chunk.width != file->width || chunk.height < 1 || chunk.height > file->height - y))
             code = EXR_ERR_CORRUPT_CHUNK;
         if (code == EXR_ERR_SUCCESS)
             code = aim(file, &decoder, &chunk, y == 0, &to);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One OpenEXR file as this library needs it: a single part of scanlines, FLOAT channels, and text attributes (luts/FORMAT.md).
- * Every function returns HAIRLUT_OK or writes "file: what was found: what was expected; what to do" to `message`. */
+/* One OpenEXR file as this library needs it: a single part of scanlines, FLOAT channels, and text attributes
+ * (luts/FORMAT.md). Every function returns HAIRLUT_OK or writes "file: what was found: what was expected; what to do" to
+ * `message`. */
 #ifndef HAIRLUT_EXR_FILE_H
 #define HAIRLUT_EXR_FILE_H
 
@@ -24,9 +25,9 @@ typedef struct hairlut_exr_file {
 /* A closed file of that path, for messages about it. Long paths keep their end: the file's name is there. */
 void hairlut_exr_name(hairlut_exr_file *file, const char *path, char *message);
 
-/* Opens the file and checks its layout, before anything is decoded: one part, scanlines, a compression without loss that every
- * OpenEXR library has, text in UTF-8, windows that start at (0, 0) and agree. `source` is NULL for a file on disk, or has a read_fn that reads it from elsewhere.
- * Close it whatever the result. */
+/* Opens the file and checks its layout, before anything is decoded: one part, scanlines, a compression without loss that
+ * every OpenEXR library has, text in UTF-8, windows that start at (0, 0) and agree. `source` is NULL for a file on disk,
+ * or has a read_fn that reads it from elsewhere. Close it whatever the result. */
 hairlut_result hairlut_exr_open(hairlut_exr_file *file, const char *path, const exr_context_initializer_t *source,
                                 char *message);
 void hairlut_exr_close(hairlut_exr_file *file);
@@ -56,7 +57,8 @@ hairlut_result hairlut_exr_pixels(const hairlut_exr_file *file, const char *cons
 hairlut_result hairlut_exr_check_digest(const hairlut_exr_file *file, const float *texels, size_t count, uint32_t *digest);
 
 /* Writes the file's name, then the text. */
-hairlut_result HAIRLUT_PRINTF(3, 4) hairlut_exr_fail(const hairlut_exr_file *file, hairlut_result result, const char *format, ...);
+hairlut_result HAIRLUT_PRINTF(3, 4)
+    hairlut_exr_fail(const hairlut_exr_file *file, hairlut_result result, const char *format, ...);
 
 /* "attribute is 'text': expected ...; bake the model again", HAIRLUT_ERROR_ATTRIBUTE */
 hairlut_result hairlut_exr_fail_text(const hairlut_exr_file *file, const char *attribute, hairlut_exr_text text,

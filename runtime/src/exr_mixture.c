@@ -17,7 +17,8 @@ static int knows_lobe(const hairlut_exr_mixture *mixture, hairlut_exr_text name)
 
 static hairlut_result read_lobes(const hairlut_exr_file *file, hairlut_exr_mixture *out)
 {
-    static const char expected[] = "1 to 16 names that differ, each [a-z][a-z0-9_]* of at most 31 characters, a space between";
+    static const char expected[] =
+        "1 to 16 names that differ, each [a-z][a-z0-9_]* of at most 31 characters, a space between";
     hairlut_exr_text text, word;
     const hairlut_result result = hairlut_exr_string(file, "hairlut.lobes", &text);
     if (result != HAIRLUT_OK)
@@ -72,8 +73,10 @@ static hairlut_result read_tables(const hairlut_exr_file *file, const hairlut_ex
         return result;
     hairlut_exr_text rest = text;
     int more = 0;
-    if (!read_reference(&rest, "_theta", &lobe->theta, &more) || (more && !read_reference(&rest, "_phi", &lobe->phi, &more)) || more)
-        return hairlut_exr_fail_text(file, attribute, text, "'NAME_theta DIGEST' or 'NAME_theta DIGEST NAME_phi DIGEST', digests of 8 "
+    if (!read_reference(&rest, "_theta", &lobe->theta, &more) ||
+        (more && !read_reference(&rest, "_phi", &lobe->phi, &more)) || more)
+        return hairlut_exr_fail_text(file, attribute, text,
+                                     "'NAME_theta DIGEST' or 'NAME_theta DIGEST NAME_phi DIGEST', digests of 8 "
                                      "lower-case hexadecimal digits");
     if (!agrees(mixture, &lobe->theta) || !agrees(mixture, &lobe->phi))
         return hairlut_exr_fail_text(file, attribute, text, "the digests that other lobes give the same tables");
@@ -106,7 +109,8 @@ static hairlut_result read_mirrored(const hairlut_exr_file *file, int *mirrored)
 }
 
 /* `count` numbers, increasing, from low to high; nodes may be NULL to check them alone. */
-static hairlut_result read_axis(const hairlut_exr_file *file, const char *attribute, int count, double low, double high, float *nodes)
+static hairlut_result read_axis(const hairlut_exr_file *file, const char *attribute, int count, double low, double high,
+                                float *nodes)
 {
     hairlut_exr_text text;
     const hairlut_result result = hairlut_exr_string(file, attribute, &text);
@@ -117,26 +121,30 @@ static hairlut_result read_axis(const hairlut_exr_file *file, const char *attrib
     for (int k = 0; k < count; ++k) {
         double number = 0.0;
         if ((k > 0 && !hairlut_exr_skip(&rest, " ")) || !hairlut_exr_number(&rest, &number))
-            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s holds %d numbers: expected %d, a space between; bake the model again",
-                                    attribute, k, count);
-        if (!(number >= low && number <= high) || (k > 0 && !((float)number > before)))
             return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                    "%s, number %d is %.9g: expected increasing numbers from %.6g to %.6g; bake the model again", attribute,
-                                    k, number, low, high);
+                                    "%s holds %d numbers: expected %d, a space between; bake the model again", attribute, k,
+                                    count);
+        if (!(number >= low && number <= high) || (k > 0 && !((float)number > before)))
+            return hairlut_exr_fail(
+                file, HAIRLUT_ERROR_ATTRIBUTE,
+                "%s, number %d is %.9g: expected increasing numbers from %.6g to %.6g; bake the model again", attribute, k,
+                number, low, high);
         before = (float)number;
         if (nodes)
             nodes[k] = before;
     }
     if (rest.begin != rest.end)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s holds more than %d numbers: expected as many as texels; bake the model again",
-                                attribute, count);
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
+                                "%s holds more than %d numbers: expected as many as texels; bake the model again", attribute,
+                                count);
     return HAIRLUT_OK;
 }
 
 static hairlut_result read_axes(const hairlut_exr_file *file, int mirrored, float *theta_r, float *offset)
 {
     const double largest_inclination = 1.571; /* more than pi/2 is in degrees */
-    const hairlut_result result = read_axis(file, "hairlut.axis.theta_r", file->height, -largest_inclination, largest_inclination, theta_r);
+    const hairlut_result result =
+        read_axis(file, "hairlut.axis.theta_r", file->height, -largest_inclination, largest_inclination, theta_r);
     if (result != HAIRLUT_OK)
         return result;
     return read_axis(file, "hairlut.axis.offset", file->width, mirrored ? 0.0 : -1.0, 1.0, offset);
@@ -146,8 +154,9 @@ static hairlut_result check_size(const hairlut_exr_file *file)
 {
     const hairlut_result result = hairlut_exr_check_size(file, 1, 1);
     if (result == HAIRLUT_OK && file->width * file->height > MOST_NODES)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE, "size is %d x %d: expected at most %d nodes in all; bake the model again",
-                                file->width, file->height, (int)MOST_NODES);
+        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE,
+                                "size is %d x %d: expected at most %d nodes in all; bake the model again", file->width,
+                                file->height, (int)MOST_NODES);
     return result;
 }
 
@@ -165,8 +174,8 @@ static void sort_channels(const float *texels, size_t nodes, int lobe_count, flo
 }
 
 /* The axes bound the size by the file's before memory for it is allocated. */
-static hairlut_result read_nodes(const hairlut_exr_file *file, const char *const *channels, const hairlut_allocator *allocator,
-                                 hairlut_exr_mixture *out)
+static hairlut_result read_nodes(const hairlut_exr_file *file, const char *const *channels,
+                                 const hairlut_allocator *allocator, hairlut_exr_mixture *out)
 {
     const size_t rows = (size_t)file->height, columns = (size_t)file->width, nodes = rows * columns;
     const size_t values = nodes * (size_t)(PER_LOBE * out->lobe_count); /* at most 2^23 */
@@ -183,7 +192,8 @@ static hairlut_result read_nodes(const hairlut_exr_file *file, const char *const
     if (result != HAIRLUT_OK)
         return result;
     sort_channels(texels, nodes, out->lobe_count, share, turn);
-    const hairlut_mixture_desc desc = {sizeof desc, file->height, file->width, theta_r, theta_r + rows, share, turn, out->desc.mirrored};
+    const hairlut_mixture_desc desc = {sizeof desc,    file->height, file->width, theta_r,
+                                       theta_r + rows, share,        turn,        out->desc.mirrored};
     out->desc = desc;
     return HAIRLUT_OK;
 }

@@ -9,14 +9,15 @@ static float rounded(double slope)
     return (float)(!(slope > 1e-9) ? 1e-9 : slope > 1e12 ? 1e12 : slope);
 }
 
-/* At a knot between cells of d0, d1 in x and h0, h1 in u: 1/slope, the density, is that of both cells, blended linearly in x. */
+/* At a knot between cells of d0, d1 in x and h0, h1 in u: 1/slope, the density, is that of both cells, blended linearly
+ * in x. */
 static double inner_slope(double d0, double d1, double h0, double h1)
 {
     return (d0 + d1) / (d1 * h0 / d0 + d0 * h1 / d1);
 }
 
-/* At an end of a row: a parabola's, from that at the next knot, but at least an eighth of the cell's mean slope. As slopes are
- * positive it is at most twice that. */
+/* At an end of a row: a parabola's, from that at the next knot, but at least an eighth of the cell's mean slope. As
+ * slopes are positive it is at most twice that. */
 static double end_slope(double mean, double next)
 {
     const double slope = 2.0 * mean - next;

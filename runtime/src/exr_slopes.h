@@ -5,8 +5,8 @@
 
 #include "hairlut.h"
 
-/* width*height pairs of floats, whose first members are given, get their second ones. Angles that are no table give slopes that are
- * numbers all the same. */
+/* width*height pairs of floats, whose first members are given, get their second ones. Angles that are no table give
+ * slopes that are numbers all the same. */
 void hairlut_exr_derive_slopes(const hairlut_table *table, float *texels);
 
 #endif

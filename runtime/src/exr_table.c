@@ -60,14 +60,16 @@ static hairlut_result check_cell(const hairlut_exr_file *file, int format)
     if (format > 1)
         return hairlut_exr_expect(file, "hairlut.cell", "rational quadratic");
     const hairlut_result result = hairlut_exr_string(file, "hairlut.cell", &text);
-    if (result == HAIRLUT_OK && !hairlut_exr_equals(text, "linear")
-        && !(hairlut_exr_parameter(text, "parabola limit=", &number) && number >= 0.0 && number <= 0.95))
-        return hairlut_exr_fail_text(file, "hairlut.cell", text, "'linear' or 'parabola limit=NUMBER' with a number from 0 to 0.95");
+    if (result == HAIRLUT_OK && !hairlut_exr_equals(text, "linear") &&
+        !(hairlut_exr_parameter(text, "parabola limit=", &number) && number >= 0.0 && number <= 0.95))
+        return hairlut_exr_fail_text(file, "hairlut.cell", text,
+                                     "'linear' or 'parabola limit=NUMBER' with a number from 0 to 0.95");
     return result;
 }
 
 /* Two numbers, increasing, which lie between two others up to the rounding of a float. */
-static hairlut_result read_pair(const hairlut_exr_file *file, const char *attribute, double least, double most, float *low, float *high)
+static hairlut_result read_pair(const hairlut_exr_file *file, const char *attribute, double least, double most, float *low,
+                                float *high)
 {
     hairlut_exr_text text;
     char expected[120];
@@ -77,8 +79,8 @@ static hairlut_result read_pair(const hairlut_exr_file *file, const char *attrib
         return result;
     hairlut_exr_text rest = text;
     snprintf(expected, sizeof expected, "two increasing angles in radians, a space between, from %.6g to %.6g", least, most);
-    if (!hairlut_exr_number(&rest, &a) || !hairlut_exr_skip(&rest, " ") || !hairlut_exr_parameter(rest, "", &b) || !(a < b)
-        || !(a >= -10.0 && b <= 10.0))
+    if (!hairlut_exr_number(&rest, &a) || !hairlut_exr_skip(&rest, " ") || !hairlut_exr_parameter(rest, "", &b) ||
+        !(a < b) || !(a >= -10.0 && b <= 10.0))
         return hairlut_exr_fail_text(file, attribute, text, expected);
     *low = (float)a;
     *high = (float)b;
@@ -104,13 +106,15 @@ static hairlut_result check_knots(const hairlut_exr_file *file, hairlut_warp war
                                     "hairlut.knots holds %d numbers: expected %d, a space between; bake the model again", i,
                                     file->width);
         if (!(fabs((upper ? 1.0 - u : u) - m) <= 1e-6 * m + 1e-15))
-            return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                    "hairlut.knots, column %d is %.17g: expected %.17g by hairlut.warp; bake the model again", i,
-                                    u, upper ? 1.0 - m : m);
+            return hairlut_exr_fail(
+                file, HAIRLUT_ERROR_ATTRIBUTE,
+                "hairlut.knots, column %d is %.17g: expected %.17g by hairlut.warp; bake the model again", i, u,
+                upper ? 1.0 - m : m);
     }
     if (text.begin != text.end)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "hairlut.knots holds more than %d numbers: expected one a column; bake the model again", file->width);
+                                "hairlut.knots holds more than %d numbers: expected one a column; bake the model again",
+                                file->width);
     return HAIRLUT_OK;
 }
 
@@ -133,9 +137,11 @@ static hairlut_result read_header(const hairlut_exr_file *file, const hairlut_ex
     if (result == HAIRLUT_OK)
         result = check_cell(file, kind->format);
     if (result == HAIRLUT_OK)
-        result = read_pair(file, "hairlut.theta_r_range", -largest_inclination, largest_inclination, &t->theta_r_min, &t->theta_r_max);
+        result = read_pair(file, "hairlut.theta_r_range", -largest_inclination, largest_inclination, &t->theta_r_min,
+                           &t->theta_r_max);
     if (result == HAIRLUT_OK)
-        result = read_pair(file, "hairlut.domain", phi ? 0.0 : -half_pi, phi ? two_pi : half_pi, &t->domain_min, &t->domain_max);
+        result =
+            read_pair(file, "hairlut.domain", phi ? 0.0 : -half_pi, phi ? two_pi : half_pi, &t->domain_min, &t->domain_max);
     if (result == HAIRLUT_OK)
         result = check_knots(file, t->warp, e);
     t->size = sizeof *t;
@@ -167,8 +173,8 @@ static hairlut_result read_pairs(const hairlut_exr_file *file, const hairlut_tab
 }
 
 /* The header is read before memory for the texels is allocated: the knots bound the width by the file's size. */
-static hairlut_result read_texels(const hairlut_exr_file *file, const hairlut_exr_kind *kind, const hairlut_allocator *allocator,
-                                  hairlut_exr_table *out)
+static hairlut_result read_texels(const hairlut_exr_file *file, const hairlut_exr_kind *kind,
+                                  const hairlut_allocator *allocator, hairlut_exr_table *out)
 {
     const size_t size = 2 * (size_t)file->width * (size_t)file->height * sizeof(float);
     char detail[HAIRLUT_MESSAGE_SIZE];
@@ -186,8 +192,9 @@ static hairlut_result read_texels(const hairlut_exr_file *file, const hairlut_ex
     return result;
 }
 
-hairlut_result hairlut_exr_read_table(const hairlut_exr_kind *kind, const char *path, const exr_context_initializer_t *source,
-                                      const hairlut_allocator *allocator, hairlut_exr_table *out, char *message)
+hairlut_result hairlut_exr_read_table(const hairlut_exr_kind *kind, const char *path,
+                                      const exr_context_initializer_t *source, const hairlut_allocator *allocator,
+                                      hairlut_exr_table *out, char *message)
 {
     hairlut_exr_file file;
     memset(out, 0, sizeof *out);

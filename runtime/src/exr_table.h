@@ -26,7 +26,8 @@ typedef struct hairlut_exr_table {
 } hairlut_exr_table;
 
 /* `source` as in hairlut_exr_open. */
-hairlut_result hairlut_exr_read_table(const hairlut_exr_kind *kind, const char *path, const exr_context_initializer_t *source,
-                                      const hairlut_allocator *allocator, hairlut_exr_table *out, char *message);
+hairlut_result hairlut_exr_read_table(const hairlut_exr_kind *kind, const char *path,
+                                      const exr_context_initializer_t *source, const hairlut_allocator *allocator,
+                                      hairlut_exr_table *out, char *message);
 
 #endif

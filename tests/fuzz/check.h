@@ -10,12 +10,12 @@
 
 #include "hairlut.h"
 
-#define REQUIRE(condition)                                                                                            \
-    do {                                                                                                              \
-        if (!(condition)) {                                                                                           \
-            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition);                                           \
-            abort();                                                                                                  \
-        }                                                                                                             \
+#define REQUIRE(condition)                                                  \
+    do {                                                                    \
+        if (!(condition)) {                                                 \
+            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition); \
+            abort();                                                        \
+        }                                                                   \
     } while (0)
 
 static inline void check_sample(hairlut_sample s)
@@ -32,8 +32,8 @@ typedef struct query {
 
 static inline int is_finite_query(const query *q)
 {
-    return isfinite(q->theta_r) && isfinite(q->phi_r) && isfinite(q->offset) && isfinite(q->u_lobe) && isfinite(q->u_theta)
-           && isfinite(q->u_phi);
+    return isfinite(q->theta_r) && isfinite(q->phi_r) && isfinite(q->offset) && isfinite(q->u_lobe) &&
+           isfinite(q->u_theta) && isfinite(q->u_phi);
 }
 
 /* One lobe; any number of a lobe. */
@@ -52,7 +52,8 @@ static inline void check_lobe(const hairlut_model *model, int lobe, const query 
 
 static inline void check_query(const hairlut_model *model, const query *q)
 {
-    const hairlut_sample s = hairlut_sample_hair(model, NULL, q->theta_r, q->phi_r, q->offset, q->u_lobe, q->u_theta, q->u_phi);
+    const hairlut_sample s =
+        hairlut_sample_hair(model, NULL, q->theta_r, q->phi_r, q->offset, q->u_lobe, q->u_theta, q->u_phi);
     const float pdf = hairlut_pdf_hair(model, NULL, q->theta_r, q->phi_r, q->offset, s.theta_i, s.phi_i);
     check_sample(s);
     REQUIRE(isfinite(pdf) && pdf >= 0.0f);
@@ -69,7 +70,8 @@ static inline void check_model(const hairlut_model *model)
     enum { ANGLES = sizeof theta_r / sizeof *theta_r, UNITS = sizeof u / sizeof *u };
     for (int i = 0; i < ANGLES; ++i)
         for (int j = 0; j < UNITS; ++j) {
-            const query q = {theta_r[i], 1e3f * theta_r[i], offset[(i + j) % ANGLES], u[(j + 3) % UNITS], u[j], u[(j + i) % UNITS]};
+            const query q = {theta_r[i], 1e3f * theta_r[i], offset[(i + j) % ANGLES], u[(j + 3) % UNITS],
+                             u[j],       u[(j + i) % UNITS]};
             check_query(model, &q);
         }
 }

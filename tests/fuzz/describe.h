@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A model's descriptors out of any bytes: sizes, numbers and texels as they come, or tamed so that many inputs are good models. */
+/* A model's descriptors out of any bytes: sizes, numbers and texels as they come, or tamed so that many inputs are good
+ * models. */
 #ifndef DESCRIBE_H
 #define DESCRIBE_H
 
@@ -102,10 +103,12 @@ static inline void take_nodes(reader *r, float *nodes, int count, float low, flo
         nodes[k] = any ? take_float(r) : count == 1 ? 0.0f : low + (high - low) * (float)k / (float)(count - 1);
 }
 
-/* Lobes of tables of their own, or of those of the lobe before. Flags as of take_table, and 16 any nodes, 32 any shares and turns. */
+/* Lobes of tables of their own, or of those of the lobe before. Flags as of take_table, and 16 any nodes, 32 any shares
+ * and turns. */
 static inline void describe(reader *r, described *d, int flags)
 {
-    const int lobes = 1 + take_byte(r) % MOST_LOBES, rows = 1 + take_byte(r) % MOST_NODES, columns = 1 + take_byte(r) % MOST_NODES;
+    const int lobes = 1 + take_byte(r) % MOST_LOBES, rows = 1 + take_byte(r) % MOST_NODES,
+              columns = 1 + take_byte(r) % MOST_NODES;
     const int mirrored = take_byte(r) % (flags & 16 ? 3 : 2);
     for (int k = 0; k < lobes; ++k) {
         const int shape = take_byte(r), own = k == 0 || shape & 1;
@@ -115,8 +118,11 @@ static inline void describe(reader *r, described *d, int flags)
         if (shape & 2)
             d->tables[2 * k + 1] = take_table(r, d->texels[2 * k + 1], 1, flags);
         const hairlut_lobe_desc lobe = {sizeof lobe, d->names[k], own ? &d->tables[2 * k] : d->lobes[k - 1].theta,
-                                        shape & 2 ? &d->tables[2 * k + 1] : own ? NULL : d->lobes[k - 1].phi,
-                                        k > 0 && !own && !(shape & 2) ? d->lobes[k - 1].azimuth : (hairlut_azimuth)(shape >> 2 & 1)};
+                                        shape & 2 ? &d->tables[2 * k + 1]
+                                        : own     ? NULL
+                                                  : d->lobes[k - 1].phi,
+                                        k > 0 && !own && !(shape & 2) ? d->lobes[k - 1].azimuth
+                                                                      : (hairlut_azimuth)(shape >> 2 & 1)};
         d->lobes[k] = lobe;
     }
     take_nodes(r, d->theta_r, rows, -1.5f, 1.5f, flags & 16);

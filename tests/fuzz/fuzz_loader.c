@@ -41,7 +41,8 @@ static int mentions(const blob *b, const char *word)
 
 static const float theta[16] = {-1.57079637f, 1.0f, -0.5f, 1.0f, 0.5f, 1.0f, 1.57079637f, 1.0f,
                                 -1.57079637f, 1.0f, -0.5f, 1.0f, 0.5f, 1.0f, 1.57079637f, 1.0f};
-static const hairlut_table straight = {sizeof straight, theta, 4, 2, -1.5f, 1.5f, -1.57079637f, 1.57079637f, HAIRLUT_WARP_OCTAVES, 1e-6f};
+static const hairlut_table straight = {sizeof straight,      theta, 4, 2, -1.5f, 1.5f, -1.57079637f, 1.57079637f,
+                                       HAIRLUT_WARP_OCTAVES, 1e-6f};
 
 /* A model of these lobes: tables that were accepted give one; a mixture's shares and turns are checked here. */
 static void use(const hairlut_model_desc *desc, int is_mixture)
@@ -56,14 +57,17 @@ static void use(const hairlut_model_desc *desc, int is_mixture)
     hairlut_free(model);
 }
 
-static hairlut_result load_table(const blob *file, const exr_context_initializer_t *source, const hairlut_allocator *allocator, char *message)
+static hairlut_result load_table(const blob *file, const exr_context_initializer_t *source,
+                                 const hairlut_allocator *allocator, char *message)
 {
     const int is_azimuth = mentions(file, "direct_phi");
-    const hairlut_exr_kind kind = {is_azimuth ? "direct_phi" : "direct_theta", is_azimuth, mentions(file, "dxdu") ? 2 : 1, "as told"};
+    const hairlut_exr_kind kind = {is_azimuth ? "direct_phi" : "direct_theta", is_azimuth, mentions(file, "dxdu") ? 2 : 1,
+                                   "as told"};
     hairlut_exr_table table;
     const hairlut_result result = hairlut_exr_read_table(&kind, "fuzz.exr", source, allocator, &table, message);
     if (result == HAIRLUT_OK) {
-        const hairlut_lobe_desc lobe = {sizeof lobe, "lobe", is_azimuth ? &straight : &table.table, is_azimuth ? &table.table : NULL, table.azimuth};
+        const hairlut_lobe_desc lobe = {sizeof lobe, "lobe", is_azimuth ? &straight : &table.table,
+                                        is_azimuth ? &table.table : NULL, table.azimuth};
         const hairlut_model_desc desc = {sizeof desc, 1, &lobe, NULL};
         use(&desc, 0);
     }
@@ -71,7 +75,8 @@ static hairlut_result load_table(const blob *file, const exr_context_initializer
     return result;
 }
 
-static hairlut_result load_mixture(const exr_context_initializer_t *source, const hairlut_allocator *allocator, char *message)
+static hairlut_result load_mixture(const exr_context_initializer_t *source, const hairlut_allocator *allocator,
+                                   char *message)
 {
     static hairlut_exr_mixture mixture;
     const hairlut_result result = hairlut_exr_read_mixture("fuzz.exr", source, allocator, &mixture, message);

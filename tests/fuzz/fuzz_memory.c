@@ -13,7 +13,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const uint8_t flags = take_byte(&r);
     describe(&r, &d, flags);
     d.desc.mixture = flags & 64 ? NULL : d.desc.mixture;
-    const hairlut_result valid = hairlut_validate(d.lobes[0].theta, message), result = hairlut_model_create(&d.desc, NULL, &model, message);
+    const hairlut_result valid = hairlut_validate(d.lobes[0].theta, message),
+                         result = hairlut_model_create(&d.desc, NULL, &model, message);
     REQUIRE(valid == HAIRLUT_OK || result == valid);
     REQUIRE((result == HAIRLUT_OK) == (model != NULL));
     if (!model)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* libFuzzer target: a model in memory, written to files and loaded again, gives the same bits; what the one door refuses, the other
- * refuses. The files go to the folder named in FUZZ_FOLDER. */
+/* libFuzzer target: a model in memory, written to files and loaded again, gives the same bits; what the one door refuses,
+ * the other refuses. The files go to the folder named in FUZZ_FOLDER. */
 #include "write_exr.h"
 
 static void same_bits(const hairlut_model *a, const hairlut_model *b, const query *q)
@@ -25,7 +25,12 @@ static void same_models(const hairlut_model *a, const hairlut_model *b)
         REQUIRE(strcmp(hairlut_lobe_name(a, lobe), hairlut_lobe_name(b, lobe)) == 0);
     for (int k = 0; k < 200; ++k) {
         const float x = (float)k / 199.0f;
-        const query q = {3.2f * x - 1.6f, 7.0f * x, 2.2f * fmodf(7.0f * x, 1.0f) - 1.1f, fmodf(31.0f * x, 1.0f), fmodf(13.0f * x, 1.0f), fmodf(89.0f * x, 1.0f)};
+        const query q = {3.2f * x - 1.6f,
+                         7.0f * x,
+                         2.2f * fmodf(7.0f * x, 1.0f) - 1.1f,
+                         fmodf(31.0f * x, 1.0f),
+                         fmodf(13.0f * x, 1.0f),
+                         fmodf(89.0f * x, 1.0f)};
         same_bits(a, b, &q);
     }
 }

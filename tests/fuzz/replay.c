@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Runs a fuzz target over files, named as arguments or, after "-", on lines of the standard input: a corpus as a plain test, with any
- * compiler. */
+/* Runs a fuzz target over files, named as arguments or, after "-", on lines of the standard input: a corpus as a plain
+ * test, with any compiler. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>

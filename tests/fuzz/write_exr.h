@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Writes a model's descriptors as files of format 2 (luts/FORMAT.md), from that page alone: plain scanlines, not compressed. */
+/* Writes a model's descriptors as files of format 2 (luts/FORMAT.md), from that page alone: plain scanlines, not
+ * compressed. */
 #ifndef WRITE_EXR_H
 #define WRITE_EXR_H
 
@@ -167,7 +168,9 @@ static inline void write_files(const char *directory, const described *d)
             snprintf(names[2 * k + n], sizeof names[0], "lobe%d_%s", owner % 10, n ? "phi" : "theta");
             if (tables[n])
                 digests[2 * k + n] = write_table(directory, names[2 * k + n], tables[n],
-                                                 n == 0 ? "none" : lobe->azimuth == HAIRLUT_AZIMUTH_SUM ? "sum" : "difference");
+                                                 n == 0                                 ? "none"
+                                                 : lobe->azimuth == HAIRLUT_AZIMUTH_SUM ? "sum"
+                                                                                        : "difference");
             snprintf(channel_names[2 * k + n], sizeof channel_names[0], "lobe%d.%s", k % 10, n ? "turn" : "share");
             channels[2 * k + n] = channel_names[2 * k + n];
         }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A walk through the whole API: good models and refused ones, from memory and from directories, whose names stand on lines of the
- * standard input. For sanitizers, valgrind and coverage. exercise N: first uses the compiled-in models in N threads at once. */
+/* A walk through the whole API: good models and refused ones, from memory and from directories, whose names stand on
+ * lines of the standard input. For sanitizers, valgrind and coverage. exercise N: first uses the compiled-in models in N
+ * threads at once. */
 #include <pthread.h>
 #include <string.h>
 
@@ -185,7 +186,8 @@ static const float *many_nodes(void)
 /* Every way in which a descriptor can be wrong. */
 static void check_refusals(scene *s)
 {
-#define REFUSE(change, expected) (set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM), change, refuse(s, expected))
+#define REFUSE(change, expected) \
+    (set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM), change, refuse(s, expected))
     REFUSE(s->desc.size = 0, HAIRLUT_ERROR_ARGUMENT);
     REFUSE(s->desc.size += 8, HAIRLUT_ERROR_VERSION);
     REFUSE(s->desc.lobe_count = 0, HAIRLUT_ERROR_ARGUMENT);
@@ -230,8 +232,9 @@ static void check_refusals(scene *s)
     REFUSE(s->mixture.theta_r_count = 0, HAIRLUT_ERROR_ARGUMENT);
     REFUSE(s->mixture.theta_r_count = 4097, HAIRLUT_ERROR_ARGUMENT);
     REFUSE(s->mixture.theta_r = NULL, HAIRLUT_ERROR_ARGUMENT);
-    REFUSE((s->mixture.theta_r_count = s->mixture.offset_count = MANY, s->mixture.theta_r = s->mixture.offset = many_nodes()),
-           HAIRLUT_ERROR_TABLE);
+    REFUSE(
+        (s->mixture.theta_r_count = s->mixture.offset_count = MANY, s->mixture.theta_r = s->mixture.offset = many_nodes()),
+        HAIRLUT_ERROR_TABLE);
     REFUSE(s->theta_r[1] = -1.0f, HAIRLUT_ERROR_TABLE);
     REFUSE(s->theta_r[0] = -7.0f, HAIRLUT_ERROR_TABLE);
     REFUSE(s->theta_r[1] = NAN, HAIRLUT_ERROR_TABLE);
@@ -246,7 +249,8 @@ static void check_refusals(scene *s)
 
 static void check_arguments(scene *s)
 {
-    const hairlut_allocator poor = {never, forget, NULL}, half = {never, NULL, NULL}, other_half = {NULL, forget, NULL}, none = {NULL, NULL, NULL};
+    const hairlut_allocator poor = {never, forget, NULL}, half = {never, NULL, NULL}, other_half = {NULL, forget, NULL},
+                            none = {NULL, NULL, NULL};
     char message[HAIRLUT_MESSAGE_SIZE];
     hairlut_model *model;
     set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_DIFFERENCE);
@@ -269,8 +273,9 @@ static void check_arguments(scene *s)
 static void check_frame(void)
 {
     const hairlut_frame frame = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
-    static const float directions[][3] = {{0.6f, 0.0f, 0.8f}, {1.0f, 0.0f, 0.0f}, {-2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f},
-                                          {NAN, 0.0f, 1.0f}, {3e38f, 3e38f, 3e38f}, {1e-30f, 0.0f, 1e-30f}, {0.0f, -1.0f, 0.0f}, {0.0f, 3e38f, 3e38f}};
+    static const float directions[][3] = {{0.6f, 0.0f, 0.8f},     {1.0f, 0.0f, 0.0f},  {-2.0f, 0.0f, 0.0f},
+                                          {0.0f, 0.0f, 0.0f},     {NAN, 0.0f, 1.0f},   {3e38f, 3e38f, 3e38f},
+                                          {1e-30f, 0.0f, 1e-30f}, {0.0f, -1.0f, 0.0f}, {0.0f, 3e38f, 3e38f}};
     static const float angles[] = {0.0f, 4.0f, -4.0f, NAN, INFINITY, 1e9f};
     float theta, phi, back[3];
     for (size_t k = 0; k < sizeof directions / sizeof *directions; ++k) {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Loads each directory named with every allocation failed in turn, then with every read failed in turn, in each way that a read can
- * fail: an error, an early end, half of what was requested. OpenEXR's own memory and reads are among them. A load either succeeds or
- * says what is wrong, and leaves no memory behind. glibc: the functions below take the places of those in its library. */
+/* Loads each directory named with every allocation failed in turn, then with every read failed in turn, in each way that
+ * a read can fail: an error, an early end, half of what was requested. OpenEXR's own memory and reads are among them. A
+ * load either succeeds or says what is wrong, and leaves no memory behind. glibc: the functions below take the places of
+ * those in its library. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -15,11 +16,11 @@ extern void __libc_free(void *);
 
 typedef enum way { ERROR, END, HALF, WAYS } way;
 
-static int armed;             /* whether what follows is counted */
-static long calls, fail_at;   /* of the armed kind; -1: none fails */
-static int failing_reads;     /* the armed kind: reads, else allocations */
+static int armed;           /* whether what follows is counted */
+static long calls, fail_at; /* of the armed kind; -1: none fails */
+static int failing_reads;   /* the armed kind: reads, else allocations */
 static way how;
-static long alive;            /* blocks that are allocated */
+static long alive; /* blocks that are allocated */
 
 /* Whether this call is the one that fails. */
 static int fails(int is_read)
@@ -137,8 +138,8 @@ static void try_all(const char *directory, int reads, way w)
         load_with_fault(directory, reads, at, w, &loaded);
         survived += loaded;
     }
-    printf("%s: %ld %s failed in turn (%s), %d loads succeeded all the same\n", directory, count, reads ? "reads" : "allocations",
-           reads ? ways[w] : "NULL", survived);
+    printf("%s: %ld %s failed in turn (%s), %d loads succeeded all the same\n", directory, count,
+           reads ? "reads" : "allocations", reads ? ways[w] : "NULL", survived);
 }
 
 int main(int argc, char **argv)

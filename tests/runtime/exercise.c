@@ -157,6 +157,9 @@ static void check_good_models(scene *s)
     set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM);
     s->desc.mixture = NULL;
     use_scene(s);
+    s->phi.theta_r_max = 0.0f; /* rows as far apart as those of theta, and fewer */
+    s->phi.height = 2;
+    use_scene(s);
     set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM);
     s->mixture.share = s->mixture.turn = NULL;
     use_scene(s);

@@ -138,7 +138,7 @@ STATES = [  # model, size, lobe; theta_r, phi_r in degrees; offset, u_theta, u_p
     ("fitted", "32", "multiple", 90.0, -180.0, 0.0, 0.999, 1.0, 0.0),
     ("printed", "shipped", "hair", -90.0, 180.0, 1.0, 0.0, 0.25, 0.5),
     ("brown", "shipped", "hair", 33.0, -20.0, -0.63, 0.31, 0.42, 0.05),
-    ("brown", "shipped", "lobe3", -12.5, 77.0, 0.4, 0.8, 0.15, 0.5),
+    ("brown", "shipped", "lobe2", -12.5, 77.0, 0.4, 0.8, 0.15, 0.5),
     ("many", "shipped", "hair", 5.0, 101.0, 0.77, 0.25, 0.66, 0.93),
 ]
 

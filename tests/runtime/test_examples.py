@@ -31,5 +31,5 @@ def test_samples_from_files_are_the_compiled_in_ones():
 
 @pytest.mark.usefixtures("loader")
 def test_a_missing_directory_is_an_error_with_its_name():
-    with pytest.raises(AssertionError, match=r"no/such/direct_theta.exr: cannot be opened"):
+    with pytest.raises(AssertionError, match=r"no/such/mixture.exr: cannot be opened"):
         run(build() / "print_samples", "no/such")

@@ -76,7 +76,8 @@ static inline hairlut_row hairlut_axis_row(const hairlut_axis *axis, float theta
 
 /* Cell i of rows j and j+1, from an end: x0, D0, w, D1. `below` and `above`, in all lanes, are the rows' weights. Blended as
  * (1-t) p + t q, which keeps a slope above zero at every t, as p + t (q-p) does not where q is far below p. */
-HAIRLUT_INLINE hairlut_quad hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad below, hairlut_quad above, int i, int high)
+HAIRLUT_INLINE hairlut_quad hairlut_axis_cell(const hairlut_axis *axis, int j, hairlut_quad below, hairlut_quad above, int i,
+                                              int high)
 {
     const unsigned column = (unsigned)i * (unsigned)axis->pitch; /* unsigned: an address needs no sign extended */
     const float *p = axis->ends[high] + column + (unsigned)j * HAIRLUT_CELL, *q = p + HAIRLUT_CELL;
@@ -142,8 +143,8 @@ HAIRLUT_INLINE hairlut_search hairlut_axis_begin_search(const hairlut_axis *axis
     return search;
 }
 
-/* The rest of it: the cell whose blended ends enclose x, counted from the low end. Where there are several axes, begin all
- * searches before ending any: one waits for its loads while the other goes on. */
+/* The rest of it: the cell whose blended ends enclose x, counted from the low end. With two axes, begin both
+ * searches before ending either, so that their loads overlap. */
 HAIRLUT_INLINE int hairlut_axis_end_search(const hairlut_search *search)
 {
     const hairlut_axis *axis = search->axis;
@@ -174,12 +175,14 @@ typedef struct hairlut_found {
  * range of a float, whether a cell is 1e-12 or 2 pi rad wide. In the high half also by -1: w, D, X and Z are never negative. */
 HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_search *search)
 {
-    static const float scales[2] = {HAIRLUT_SCALE, -HAIRLUT_SCALE}; /* loaded: the half is as good as random, and so would be a branch */
+    /* loaded: a branch on the half, which is as good as random, would be mispredicted half of the time */
+    static const float scales[2] = {HAIRLUT_SCALE, -HAIRLUT_SCALE};
     hairlut_found found;
     const hairlut_axis *axis = search->axis;
     const int i = hairlut_axis_nearer(axis, hairlut_axis_end_search(search), &found.high);
     const float scale = scales[found.high], t = search->row.t;
-    found.cell = hairlut_axis_cell(axis, search->row.j, hairlut_quad_all(scale * (1.0f - t)), hairlut_quad_all(scale * t), i, found.high);
+    found.cell = hairlut_axis_cell(axis, search->row.j, hairlut_quad_all(scale * (1.0f - t)), hairlut_quad_all(scale * t), i,
+                                   found.high);
     found.x = scale * search->x;
     found.knot = axis->knots + HAIRLUT_KNOT * i;
     return found;
@@ -196,7 +199,8 @@ HAIRLUT_INLINE hairlut_inverses hairlut_invert_four(const hairlut_found found[4]
     hairlut_inverses inverse;
     hairlut_quad cell[4] = {found[0].cell, found[1].cell, found[2].cell, found[3].cell};
     hairlut_quad_transpose(cell);
-    const hairlut_quad x = hairlut_quad_of_four(found[0].x, found[1].x, found[2].x, found[3].x), two = hairlut_quad_all(2.0f);
+    const hairlut_quad x = hairlut_quad_of_four(found[0].x, found[1].x, found[2].x, found[3].x),
+                       two = hairlut_quad_all(2.0f);
     const hairlut_quad h = hairlut_quad_of_four(found[0].knot[2], found[1].knot[2], found[2].knot[2], found[3].knot[2]);
     const hairlut_quad d0 = cell[1], w = cell[2], d1 = cell[3];
     const hairlut_quad beyond = hairlut_quad_max(hairlut_quad_sub(x, cell[0]), hairlut_quad_all(0.0f));
@@ -253,7 +257,8 @@ HAIRLUT_INLINE hairlut_draws hairlut_draw_two(const hairlut_placed *a, const hai
     const hairlut_quad slopes = hairlut_quad_mul(hairlut_quad_add(d0, d1), p);
     const hairlut_quad ratio = hairlut_quad_div(w, hairlut_quad_add(hairlut_quad_mul(w, hairlut_quad_add(xi2, q2)), slopes));
     const hairlut_quad middle = hairlut_quad_mul(hairlut_quad_mul(two, w), p);
-    const hairlut_quad bent = hairlut_quad_add(hairlut_quad_add(hairlut_quad_mul(d1, xi2), middle), hairlut_quad_mul(d0, q2));
+    const hairlut_quad bent =
+        hairlut_quad_add(hairlut_quad_add(hairlut_quad_mul(d1, xi2), middle), hairlut_quad_mul(d0, q2));
     const hairlut_quad slope = hairlut_quad_mul(hairlut_quad_mul(hairlut_quad_mul(ratio, ratio), bent), knot[1]);
     const hairlut_quad rise = hairlut_quad_add(hairlut_quad_mul(w, xi2), hairlut_quad_mul(d0, p));
     const hairlut_draws draws = {hairlut_quad_add(cell[0], hairlut_quad_mul(ratio, rise)), hairlut_quad_abs(slope)};

@@ -16,14 +16,14 @@ enum { BLOCK = 256, ROOM = BLOCK + LANES };
 #define HAIRLUT_UNROLLED
 #endif
 
-/* Samples on an axis. What a pass no longer needs makes room for what it finds: all of it is to stay in the first-level cache,
- * beside the table. */
+/* Samples on an axis. A pass stores its results in place of what it no longer needs, so that all of it stays in the first-level
+ * cache, beside the table. */
 typedef struct draws {
-    int at[BLOCK];     /* the offset of the cell */
-    int knot[BLOCK];   /* the offset of its knot */
-    float t[BLOCK];    /* the weight of the row above; from fetch_draws on: the blended cell's w */
-    float m[BLOCK];    /* of hairlut_place; from fetch_draws on: (m - u0) / h */
-    float x0[BLOCK];   /* of the blended cell, as d0 and d1 */
+    int at[BLOCK];   /* the offset of the cell */
+    int knot[BLOCK]; /* the offset of its knot */
+    float t[BLOCK];  /* the weight of the row above; from fetch_draws on: the blended cell's w */
+    float m[BLOCK];  /* of hairlut_place; from fetch_draws on: (m - u0) / h */
+    float x0[BLOCK]; /* of the blended cell, as d0 and d1 */
     float d0[BLOCK];
     float d1[BLOCK];
     float rate[BLOCK]; /* 1 / h */
@@ -31,12 +31,12 @@ typedef struct draws {
 
 /* Directions on an axis. */
 typedef struct searches {
-    int j[BLOCK];      /* the row */
-    int cell[BLOCK];   /* as far as it is known, counted from the low end */
-    int at[BLOCK];     /* where to read on: an offset among the rows, then among the cells */
-    int knot[BLOCK];   /* the offset of the cell's knot */
-    float t[BLOCK];    /* the weight of the row above; from fetch_searches on: the blended cell's w, scaled, as d0 and d1 */
-    float x[BLOCK];    /* the angle; from fetch_searches on: its distance from the cell's nearer end, scaled */
+    int j[BLOCK];    /* the row */
+    int cell[BLOCK]; /* as far as it is known, counted from the low end */
+    int at[BLOCK];   /* where to read on: an offset among the rows, then among the cells */
+    int knot[BLOCK]; /* the offset of the cell's knot */
+    float t[BLOCK];  /* the weight of the row above; from fetch_searches on: the blended cell's w, scaled, as d0 and d1 */
+    float x[BLOCK];  /* the angle; from fetch_searches on: its distance from the cell's nearer end, scaled */
     float d0[BLOCK];
     float d1[BLOCK];
     float width[BLOCK]; /* h, scaled */
@@ -181,7 +181,8 @@ static inline void fetch_searches(const hairlut_axis *axis, size_t n, searches *
     for (size_t s = 0; s < n; s += LANES) {
         real knot[HAIRLUT_KNOT];
         const whole high = iall((int)(axis->ends[1] - axis->ends[0]) - 1);
-        const real t = load(q->t + s), scale = choose(igreater(iload(q->at + s), high), all(-HAIRLUT_SCALE), all(HAIRLUT_SCALE));
+        const real t = load(q->t + s),
+                   scale = choose(igreater(iload(q->at + s), high), all(-HAIRLUT_SCALE), all(HAIRLUT_SCALE));
         const cells cell = load_cells(axis, q->at + s, mul(scale, sub(all(1.0f), t)), mul(scale, t));
         gather4(axis->knots, q->knot + s, knot);
         store(q->x + s, clamp(sub(mul(scale, load(q->x + s)), cell.x0), all(0.0f), cell.w));

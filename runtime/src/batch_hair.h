@@ -18,7 +18,7 @@ typedef struct hair_inputs {
     const float *theta_i, *phi_i;          /* of directions */
 } hair_inputs;
 
-/* Directions whose density is asked for, and what they are seen from. r and i are phi_r and phi_i in [-pi, pi). */
+/* Directions whose density is computed, and the viewer's. r and i are phi_r and phi_i in [-pi, pi). */
 typedef struct directions {
     float theta_r[ROOM], r[ROOM], theta_i[ROOM], i[ROOM];
 } directions;
@@ -46,7 +46,8 @@ static inline real turned_relative(const hairlut_model *model, int k, const dire
 
 /* The density of lobe k of directions from .. from+n-1, to the same places of pdf. What is written beyond, up to a whole vector,
  * is a density too. */
-static inline void range_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t from, size_t n, float *pdf)
+static inline void range_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t from,
+                                 size_t n, float *pdf)
 {
     float azimuth[BLOCK];
     const size_t padded = whole_vectors(n);
@@ -56,8 +57,8 @@ static inline void range_density(const hairlut_model *model, int k, const direct
 }
 
 /* The same of those of the first n that have a share of the lobe and are not in from .. to-1; 0 for the others. */
-static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t n, size_t from, size_t to,
-                                float *pdf)
+static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t n,
+                                size_t from, size_t to, float *pdf)
 {
     float azimuth[ROOM], theta_r[BLOCK], theta_i[BLOCK], asked[BLOCK], density[BLOCK];
     int list[BLOCK];
@@ -87,8 +88,8 @@ typedef struct ranges {
 } ranges;
 
 /* Adds weight * density over the lobes to sum. Those that drew a lobe have its density in `drawn`; NULL: none drew any. */
-static inline void add_densities(const hairlut_model *model, const directions *d, const mixes *m, size_t n, const ranges *own,
-                                 const float *drawn, float *sum)
+static inline void add_densities(const hairlut_model *model, const directions *d, const mixes *m, size_t n,
+                                 const ranges *own, const float *drawn, float *sum)
 {
     float pdf[ROOM];
     for (size_t s = 0; s < n; s += LANES)
@@ -192,8 +193,8 @@ typedef struct numbers_drawn {
 } numbers_drawn;
 
 /* The mixtures of a block, and its inputs, in the order of the lobes drawn. What is valid stays in the order of the inputs. */
-static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, mixes *m, directions *d, numbers_drawn *u,
-                           ranges *own, int *order)
+static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, mixes *m, directions *d,
+                           numbers_drawn *u, ranges *own, int *order)
 {
     float r[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
@@ -233,8 +234,8 @@ static inline real turned_incident(const hairlut_model *model, int k, const mixe
 }
 
 /* What lobe k draws for its range of the sorted samples. Beyond its end, up to a whole vector, the next lobe writes again. */
-static inline void draw_range(const hairlut_model *model, int k, const mixes *m, const numbers_drawn *u, size_t from, size_t to,
-                              directions *d, float *drawn, float *cosines)
+static inline void draw_range(const hairlut_model *model, int k, const mixes *m, const numbers_drawn *u, size_t from,
+                              size_t to, directions *d, float *drawn, float *cosines)
 {
     const hairlut_lobe *lobe = &model->lobes[k];
     float theta_i[BLOCK], azimuth[BLOCK];

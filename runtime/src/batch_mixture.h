@@ -21,9 +21,9 @@ typedef struct mixes {
     int chosen[BLOCK];                     /* the lobe that is drawn */
     float valid[BLOCK];                    /* 1, or 0 where no density can be given */
     int all_valid;
-    int alone;                             /* whether weights are those of the model's only node, and not stored */
-    int some[HAIRLUT_MAX_LOBES];           /* whether any of the block has a share of the lobe */
-    int every[HAIRLUT_MAX_LOBES];          /* whether all have */
+    int alone;                    /* whether weights are those of the model's only node, and not stored */
+    int some[HAIRLUT_MAX_LOBES];  /* whether any of the block has a share of the lobe */
+    int every[HAIRLUT_MAX_LOBES]; /* whether all have */
 } mixes;
 
 enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, more are halved for single samples */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* By runtime/tools/embed.c from printed fitted brown; not to be edited. */
 #include "internal.h"
 

@@ -16,12 +16,13 @@ static float lobe_azimuth(const hairlut_model *model, const hairlut_mix *mix, in
 {
     const hairlut_mixture *m = &model->mixture;
     const float relative = hairlut_relative_azimuth(model->lobes[k].azimuth, r, i);
-    return m->turned || m->mirrored ? hairlut_turned_relative(relative, m->turned ? mix->turn[k] : 0.0f, mix->side) : relative;
+    return m->turned || m->mirrored ? hairlut_turned_relative(relative, m->turned ? mix->turn[k] : 0.0f, mix->side)
+                                    : relative;
 }
 
 /* The sum of weight * density. Lobe `drawn`, if there is one, has the density `known`. */
-static float mixed(const hairlut_model *model, const hairlut_mix *mix, float theta_r, float r, float theta_i, float i, int drawn,
-                   float known)
+static float mixed(const hairlut_model *model, const hairlut_mix *mix, float theta_r, float r, float theta_i, float i,
+                   int drawn, float known)
 {
     float contains[HAIRLUT_MAX_LOBES], root[2 * HAIRLUT_MAX_LOBES], bend[2 * HAIRLUT_MAX_LOBES], pdf = 0.0f;
     hairlut_row row = {0, 0.0f};
@@ -62,12 +63,13 @@ hairlut_sample hairlut_sample_hair(const hairlut_model *model, const float *shar
     return hairlut_finish(theta_i, phi_i, valid ? mixed(model, &mix, theta_r, r, theta_i, phi_i, k, drawn.pdf) : 0.0f);
 }
 
-float hairlut_pdf_hair(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset, float theta_i,
-                       float phi_i)
+float hairlut_pdf_hair(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset,
+                       float theta_i, float phi_i)
 {
     hairlut_mix mix;
     hairlut_mixture_at(model, shares, 1, theta_r, offset, &mix);
     if (!hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i) || offset != offset || !(mix.sum > 0.0f))
         return 0.0f;
-    return mixed(model, &mix, theta_r, hairlut_wrap(phi_r, -hairlut_pi), theta_i, hairlut_wrap(phi_i, -hairlut_pi), -1, 0.0f);
+    return mixed(model, &mix, theta_r, hairlut_wrap(phi_r, -hairlut_pi), theta_i, hairlut_wrap(phi_i, -hairlut_pi), -1,
+                 0.0f);
 }

@@ -8,10 +8,10 @@
 #include "hairlut.h"
 #include "platform.h"
 
-/* A stored table is its rows, which find the cell of an angle, and its cells, which a sample and a density are taken from.
- * Both repeat the last row, so that theta_r at the end of its range has a row above it.
+/* A stored table has two parts: rows, in which the cell of an angle is searched, and cells, from which samples and densities
+ * are computed. Both repeat the last row, so that theta_r at the end of its range has a row above it.
  *
- * A stored row is groups of texels, which are the ends of parts of it: a count of those up to x tells in which part x lies. The
+ * A stored row is groups of texels, which are the ends of parts of it: the number of those up to x is the part in which x lies. The
  * first group is the ends of blocks of `step` cells: its texel k is that of column (k+1)*step. Group g of those that follow is
  * the ends of cells, columns g*size+1 to (g+1)*size, where size is that of a group. HAIRLUT_NO_TEXEL takes the place of the
  * last column, the end of the domain, and of those beyond.
@@ -21,21 +21,21 @@
 enum { HAIRLUT_GROUP = 16, HAIRLUT_SMALL_GROUP = HAIRLUT_GROUP / 2, HAIRLUT_LINE = 16 /* floats of a cache line */ };
 #define HAIRLUT_NO_TEXEL FLT_MAX
 #define HAIRLUT_WHOLE(n, size) (((n) + (size) - 1) / (size) * (size))
-/* Small: 9 blocks of 8 hold all cells. Else a block is the least power of two, from 16 on, of which 17 blocks hold them; a side
+/* Small: 9 blocks of 8 have all cells. Else a block is the least power of two, from 16 on, of which 17 blocks have them; a side
  * is at most 4096. */
 #define HAIRLUT_IS_SMALL(columns) ((columns) - 1 <= (HAIRLUT_SMALL_GROUP + 1) * HAIRLUT_SMALL_GROUP)
 #define HAIRLUT_FITS(columns, step) ((columns) - 1 <= (HAIRLUT_GROUP + 1) * (step))
-#define HAIRLUT_STEP(columns)                                                                                         \
-    (HAIRLUT_IS_SMALL(columns)    ? HAIRLUT_SMALL_GROUP                                                               \
-     : HAIRLUT_FITS(columns, 16)  ? 16                                                                                \
-     : HAIRLUT_FITS(columns, 32)  ? 32                                                                                \
-     : HAIRLUT_FITS(columns, 64)  ? 64                                                                                \
-     : HAIRLUT_FITS(columns, 128) ? 128                                                                               \
+#define HAIRLUT_STEP(columns)                           \
+    (HAIRLUT_IS_SMALL(columns)    ? HAIRLUT_SMALL_GROUP \
+     : HAIRLUT_FITS(columns, 16)  ? 16                  \
+     : HAIRLUT_FITS(columns, 32)  ? 32                  \
+     : HAIRLUT_FITS(columns, 64)  ? 64                  \
+     : HAIRLUT_FITS(columns, 128) ? 128                 \
                                   : 256)
 #define HAIRLUT_GROUP_SIZE(columns) (HAIRLUT_IS_SMALL(columns) ? HAIRLUT_SMALL_GROUP : HAIRLUT_GROUP)
 /* Floats of a row for each cell, of a row, and of all rows */
 #define HAIRLUT_ROW_FLOATS(columns) (HAIRLUT_LINE / HAIRLUT_GROUP_SIZE(columns))
-#define HAIRLUT_STRIDE(columns)                                                                                       \
+#define HAIRLUT_STRIDE(columns) \
     (HAIRLUT_LINE + HAIRLUT_ROW_FLOATS(columns) * HAIRLUT_WHOLE((columns) - 1, HAIRLUT_STEP(columns)))
 #define HAIRLUT_STORED(columns, height) (HAIRLUT_STRIDE(columns) * ((height) + 1))
 
@@ -54,7 +54,7 @@ enum { HAIRLUT_CELL = 4, HAIRLUT_KNOT = 4 /* floats */ };
 #define HAIRLUT_STEEPEST 4096.0f
 #define HAIRLUT_SCALE 32768.0f
 #define HAIRLUT_PITCH(height) (HAIRLUT_CELL * ((height) + 1)) /* floats from one cell of a row to the next */
-#define HAIRLUT_HALF(columns) ((columns) / 2 + 1)              /* cells of a row */
+#define HAIRLUT_HALF(columns) ((columns) / 2 + 1)             /* cells of a row */
 #define HAIRLUT_CELLS(columns, height) (2 * HAIRLUT_HALF(columns) * HAIRLUT_PITCH(height))
 
 #if defined(__GNUC__)
@@ -84,10 +84,10 @@ typedef struct hairlut_axis {
     float row_scale;      /* rows per radian of theta_r */
     float row_last;       /* height - 1 */
     int warp;             /* hairlut_warp */
-    float e;              /* octaves: the cell of m is the integer part of the folded column y scale - origin, with y the float */
-    float scale;          /* whose bits are those of m + e shifted right by two; uniform: y = m */
-    float origin;         /* y scale at m = 0, rounded as when a sample is drawn, so that no column is below 0 */
-    float low;            /* the domain */
+    float e;      /* octaves: the cell of m is the integer part of the folded column y scale - origin, with y the float */
+    float scale;  /* whose bits are those of m + e shifted right by two; uniform: y = m */
+    float origin; /* y scale at m = 0, rounded as when a sample is drawn, so that no column is below 0 */
+    float low;    /* the domain */
     float high;
     int columns;
     int height;

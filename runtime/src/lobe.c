@@ -12,7 +12,8 @@ static float relative_azimuth(const hairlut_lobe *lobe, float phi_r, float phi_i
     return hairlut_relative_azimuth(lobe->azimuth, hairlut_wrap(phi_r, -hairlut_pi), hairlut_wrap(phi_i, -hairlut_pi));
 }
 
-hairlut_sample hairlut_sample_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float u_theta, float u_phi)
+hairlut_sample hairlut_sample_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float u_theta,
+                                   float u_phi)
 {
     const hairlut_lobe *l = lobe_of(model, lobe);
     if (!l)
@@ -36,12 +37,14 @@ float hairlut_pdf_lobe(const hairlut_model *model, int lobe, float theta_r, floa
     hairlut_searches searches;
     float root[4], bend[4];
     searches.count = 0;
-    const float contains = hairlut_lobe_begin_search(l, theta_r, hairlut_axis_row(&l->theta, theta_r), theta_i, phi, &searches);
+    const float contains =
+        hairlut_lobe_begin_search(l, theta_r, hairlut_axis_row(&l->theta, theta_r), theta_i, phi, &searches);
     hairlut_end_searches(&searches, root, bend);
     return hairlut_lobe_density(l, contains, root, bend);
 }
 
-void hairlut_invert_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float theta_i, float phi_i, float u[2])
+void hairlut_invert_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r, float theta_i, float phi_i,
+                         float u[2])
 {
     const hairlut_lobe *l = lobe_of(model, lobe);
     u[0] = u[1] = 0.0f;

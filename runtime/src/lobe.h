@@ -56,8 +56,8 @@ typedef struct hairlut_searches {
 
 /* Begins those of a lobe. phi is the relative azimuth, not used where it is uniform. Returns 1 where the lobe's domain contains
  * the direction, else 0. */
-HAIRLUT_INLINE float hairlut_lobe_begin_search(const hairlut_lobe *lobe, float theta_r, hairlut_row row, float theta_i, float phi,
-                                               hairlut_searches *under_way)
+HAIRLUT_INLINE float hairlut_lobe_begin_search(const hairlut_lobe *lobe, float theta_r, hairlut_row row, float theta_i,
+                                               float phi, hairlut_searches *under_way)
 {
     hairlut_search *next = under_way->search + under_way->count;
     next[0] = hairlut_axis_begin_search(&lobe->theta, row, theta_i);

@@ -12,13 +12,15 @@ static const float largest_turn = 25.1327419f; /* the float next to 8 pi, above 
 static hairlut_result validate_nodes(const char *axis, const float *nodes, int count, float low, float high, char *message)
 {
     if (count < 1 || count > MAX_NODES)
-        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "mixture: %s_count is %d: expected 1 to %d", axis, count, (int)MAX_NODES);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "mixture: %s_count is %d: expected 1 to %d", axis, count,
+                            (int)MAX_NODES);
     if (!nodes && count > 1)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "mixture: %s is NULL: expected %d numbers", axis, count);
     for (int k = 0; nodes && k < count; ++k)
         if (!(nodes[k] >= low && nodes[k] <= high && (k == 0 || nodes[k] > nodes[k - 1])))
-            return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "mixture: %s node %d is %.9g: expected increasing numbers from %g to %g",
-                                axis, k, (double)nodes[k], (double)low, (double)high);
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                                "mixture: %s node %d is %.9g: expected increasing numbers from %g to %g", axis, k,
+                                (double)nodes[k], (double)low, (double)high);
     return HAIRLUT_OK;
 }
 
@@ -36,12 +38,14 @@ static hairlut_result validate_node(const hairlut_mixture_desc *desc, int lobe_c
         const float turn = desc->turn ? desc->turn[place(desc, k, j, o)] : 0.0f;
         if (!(share >= 0.0f && hairlut_is_finite(share)))
             return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
-                                "mixture: share of lobe %d at theta_r node %d, offset node %d is %.9g: expected a finite number, not below 0",
+                                "mixture: share of lobe %d at theta_r node %d, offset node %d is %.9g: expected a finite "
+                                "number, not below 0",
                                 k, j, o, (double)share);
         if (!(fabsf(turn) <= largest_turn))
-            return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
-                                "mixture: turn of lobe %d at theta_r node %d, offset node %d is %.9g: expected -8 pi to 8 pi", k, j, o,
-                                (double)turn);
+            return hairlut_fail(
+                HAIRLUT_ERROR_TABLE, message,
+                "mixture: turn of lobe %d at theta_r node %d, offset node %d is %.9g: expected -8 pi to 8 pi", k, j, o,
+                (double)turn);
         shares += share > 0.0f;
     }
     if (shares == 0)
@@ -62,8 +66,8 @@ hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lo
     if (result == HAIRLUT_OK)
         result = validate_nodes("offset", desc->offset, desc->offset_count, desc->mirrored ? 0.0f : -1.0f, 1.0f, message);
     if (result == HAIRLUT_OK && desc->theta_r_count * desc->offset_count > MAX_GRID)
-        result = hairlut_fail(HAIRLUT_ERROR_TABLE, message, "mixture: %d x %d nodes: expected at most %d in all", desc->theta_r_count,
-                              desc->offset_count, (int)MAX_GRID);
+        result = hairlut_fail(HAIRLUT_ERROR_TABLE, message, "mixture: %d x %d nodes: expected at most %d in all",
+                              desc->theta_r_count, desc->offset_count, (int)MAX_GRID);
     for (int j = 0; result == HAIRLUT_OK && j < desc->theta_r_count; ++j)
         for (int o = 0; result == HAIRLUT_OK && o < desc->offset_count; ++o)
             result = validate_node(desc, lobe_count, j, o, message);
@@ -76,7 +80,7 @@ size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count)
     return HAIRLUT_CORNER * rows * columns * (size_t)lobe_count + 2 * rows + 2 * columns;
 }
 
-/* wrap to [-pi, pi), in double: the arc from one turn to another is the shorter one also where a float could not tell */
+/* wrap to [-pi, pi), in double: the arc from one turn to another is the shorter one also where floats are too coarse to decide */
 static double shorter_arc(double turn)
 {
     static const double pi = 3.14159265358979323846;
@@ -121,7 +125,8 @@ void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc 
 {
     const hairlut_mixture_desc plain = {sizeof plain, 1, 1, NULL, NULL, NULL, NULL, 0};
     const hairlut_mixture_desc *d = desc ? desc : &plain;
-    float *corner = memory, *theta_r = memory + hairlut_mixture_floats(d, lobe_count) - 2 * (d->theta_r_count + d->offset_count);
+    float *corner = memory,
+          *theta_r = memory + hairlut_mixture_floats(d, lobe_count) - 2 * (d->theta_r_count + d->offset_count);
     float *arc = theta_r + 2 * d->theta_r_count;
     mixture->corners = corner;
     mixture->theta_r = theta_r;

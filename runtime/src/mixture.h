@@ -11,7 +11,7 @@
 
 /* Shares are multiplied by a power of two if their sum is far from 1, so that none overflows or vanishes. */
 static const float hairlut_large_share = 1.26765060e30f /* 2^100 */, hairlut_small_share = 9.09494702e-13f; /* 2^-40 */
-static const float hairlut_shrink = 9.09494702e-13f /* 2^-40 */, hairlut_grow = 1.23794004e27f; /* 2^90 */
+static const float hairlut_shrink = 9.09494702e-13f /* 2^-40 */, hairlut_grow = 1.23794004e27f;             /* 2^90 */
 
 typedef struct hairlut_mix {
     float share[HAIRLUT_MAX_LOBES];  /* in a unit of their own */
@@ -58,8 +58,8 @@ HAIRLUT_INLINE void hairlut_mixture_given(int count, const float *shares, size_t
 }
 
 /* The share of a lobe from the four corners around: along theta_r by t, then along the offset by s. */
-static inline float hairlut_blend_shares(const float *low, const float *low_above, const float *high, const float *high_above, float t,
-                                         float s)
+static inline float hairlut_blend_shares(const float *low, const float *low_above, const float *high,
+                                         const float *high_above, float t, float s)
 {
     const float from = (1.0f - t) * low[0] + t * low_above[0], to = (1.0f - t) * high[0] + t * high_above[0];
     return (1.0f - s) * from + s * to;
@@ -71,7 +71,7 @@ static inline float hairlut_blend_turns(const float *low, const float *high, flo
     return hairlut_wrap(from + s * hairlut_wrap(to - from, -hairlut_pi), -hairlut_pi);
 }
 
-/* Between nodes; a NaN offset is as good as -1: the density is 0. */
+/* Between nodes; a NaN offset counts as -1; its density is 0. */
 static inline void hairlut_mixture_between(const hairlut_model *model, float theta_r, float h, hairlut_mix *mix)
 {
     const hairlut_mixture *m = &model->mixture;
@@ -82,7 +82,8 @@ static inline void hairlut_mixture_between(const hairlut_model *model, float the
     const float *corner = m->corners + (ptrdiff_t)row.j * above + (ptrdiff_t)column.j * beside;
     mix->sum = 0.0f;
     for (int k = 0; k < count; ++k, corner += HAIRLUT_CORNER) {
-        mix->share[k] = hairlut_blend_shares(corner, corner + above, corner + beside, corner + above + beside, row.t, column.t);
+        mix->share[k] =
+            hairlut_blend_shares(corner, corner + above, corner + beside, corner + above + beside, row.t, column.t);
         mix->sum += mix->share[k];
         if (m->turned)
             mix->turn[k] = hairlut_blend_turns(corner, corner + beside, row.t, column.t);
@@ -102,8 +103,8 @@ static inline void hairlut_mixture_alone(const hairlut_model *model, hairlut_mix
 }
 
 /* shares: the caller's, as hairlut_mixture_given takes them, or NULL. */
-HAIRLUT_INLINE void hairlut_mixture_at(const hairlut_model *model, const float *shares, size_t stride, float theta_r, float offset,
-                                       hairlut_mix *mix)
+HAIRLUT_INLINE void hairlut_mixture_at(const hairlut_model *model, const float *shares, size_t stride, float theta_r,
+                                       float offset, hairlut_mix *mix)
 {
     const int mirrored = model->mixture.mirrored, alone = model->mixture.rows == 1 && model->mixture.columns == 1;
     const float h = hairlut_clamp(offset, -1.0f, 1.0f);

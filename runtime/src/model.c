@@ -55,16 +55,17 @@ static int is_name(const char *name)
     return length > 0 && length < HAIRLUT_NAME_SIZE;
 }
 
-static hairlut_result validate_table(const hairlut_lobe_desc *lobe, const char *angle, const hairlut_table *t, float low, float high,
-                                     char *message)
+static hairlut_result validate_table(const hairlut_lobe_desc *lobe, const char *angle, const hairlut_table *t, float low,
+                                     float high, char *message)
 {
     char detail[HAIRLUT_MESSAGE_SIZE];
     const hairlut_result result = hairlut_validate(t, detail);
     if (result != HAIRLUT_OK)
         return hairlut_fail(result, message, "%s_%s: %.460s", lobe->name, angle, detail);
     if (!hairlut_within(t->domain_min, t->domain_max, low, high))
-        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "%s_%s: domain %.9g to %.9g: expected to lie within %.9g to %.9g", lobe->name,
-                            angle, (double)t->domain_min, (double)t->domain_max, (double)low, (double)high);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
+                            "%s_%s: domain %.9g to %.9g: expected to lie within %.9g to %.9g", lobe->name, angle,
+                            (double)t->domain_min, (double)t->domain_max, (double)low, (double)high);
     return HAIRLUT_OK;
 }
 
@@ -75,18 +76,21 @@ static hairlut_result validate_lobe(const hairlut_model_desc *desc, int k, char 
     if (result != HAIRLUT_OK)
         return result;
     if (!lobe->name || !is_name(lobe->name))
-        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "lobe %d: name is %s%.40s%s: expected [a-z][a-z0-9_]*, at most %d characters",
-                            k, lobe->name ? "'" : "", lobe->name ? lobe->name : "NULL", lobe->name ? "'" : "", HAIRLUT_NAME_SIZE - 1);
+        return hairlut_fail(
+            HAIRLUT_ERROR_ARGUMENT, message, "lobe %d: name is %s%.40s%s: expected [a-z][a-z0-9_]*, at most %d characters",
+            k, lobe->name ? "'" : "", lobe->name ? lobe->name : "NULL", lobe->name ? "'" : "", HAIRLUT_NAME_SIZE - 1);
     for (int l = 0; l < k; ++l)
         if (strcmp(lobe_at(desc, l)->name, lobe->name) == 0)
-            return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "lobes %d and %d are both named '%s': expected names that differ", l, k,
-                                lobe->name);
+            return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
+                                "lobes %d and %d are both named '%s': expected names that differ", l, k, lobe->name);
     result = validate_table(lobe, "theta", lobe->theta, -hairlut_half_pi_high, hairlut_half_pi_high, message);
     if (result == HAIRLUT_OK && lobe->phi)
         result = validate_table(lobe, "phi", lobe->phi, 0.0f, hairlut_two_pi, message);
-    if (result == HAIRLUT_OK && lobe->phi && lobe->azimuth != HAIRLUT_AZIMUTH_SUM && lobe->azimuth != HAIRLUT_AZIMUTH_DIFFERENCE)
+    if (result == HAIRLUT_OK && lobe->phi && lobe->azimuth != HAIRLUT_AZIMUTH_SUM &&
+        lobe->azimuth != HAIRLUT_AZIMUTH_DIFFERENCE)
         result = hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
-                              "lobe %d: azimuth is %d: expected HAIRLUT_AZIMUTH_SUM or HAIRLUT_AZIMUTH_DIFFERENCE", k, (int)lobe->azimuth);
+                              "lobe %d: azimuth is %d: expected HAIRLUT_AZIMUTH_SUM or HAIRLUT_AZIMUTH_DIFFERENCE", k,
+                              (int)lobe->azimuth);
     return result;
 }
 
@@ -98,7 +102,8 @@ static hairlut_result validate_model(const hairlut_model_desc *desc, char *messa
     if (result != HAIRLUT_OK)
         return result;
     if (desc->lobe_count < 1 || desc->lobe_count > HAIRLUT_MAX_LOBES)
-        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "lobe_count is %d: expected 1 to %d", desc->lobe_count, HAIRLUT_MAX_LOBES);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "lobe_count is %d: expected 1 to %d", desc->lobe_count,
+                            HAIRLUT_MAX_LOBES);
     if (!desc->lobes)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "lobes is NULL: expected %d descriptors", desc->lobe_count);
     result = hairlut_check_size("hairlut_lobe_desc", desc->lobes->size, sizeof *desc->lobes, message);
@@ -139,8 +144,8 @@ static void number_grids(table_list *list)
 {
     for (int k = 0; k < list->count; ++k) {
         int first = 0;
-        while (list->axes[first].row_origin != list->axes[k].row_origin || list->axes[first].row_scale != list->axes[k].row_scale
-               || list->axes[first].height != list->axes[k].height)
+        while (list->axes[first].row_origin != list->axes[k].row_origin ||
+               list->axes[first].row_scale != list->axes[k].row_scale || list->axes[first].height != list->axes[k].height)
             ++first;
         list->axes[k].grid = first;
     }

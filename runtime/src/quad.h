@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Four neighbouring floats at once, and a float's bits, where every processor of an architecture has the instructions:
  * x86-64, AArch64. The form in plain C gives the same numbers. */
 #ifndef HAIRLUT_QUAD_H
@@ -16,8 +17,8 @@
 #include <arm_neon.h>
 #endif
 
-/* c, of which the compiler knows nothing more. Where gcc sees that c is a constant, it makes x > c ? x : c a comparison and a
- * jump, three operations; of any other number, one: maxss. */
+/* Hides a constant from the optimiser. With a constant c, gcc compiles x > c ? x : c to a comparison and a jump, three
+ * operations; with any other number to one: maxss. */
 static inline float hairlut_constant(float c)
 {
 #if defined(HAIRLUT_QUAD_SSE2) && defined(__GNUC__)
@@ -29,11 +30,13 @@ static inline float hairlut_constant(float c)
 #if defined(HAIRLUT_QUAD_SSE2)
 typedef __m128 hairlut_quad;
 
+/* clang-format off */
 static inline hairlut_quad hairlut_quad_load(const float *p) { return _mm_loadu_ps(p); }
 static inline hairlut_quad hairlut_quad_all(float a) { return _mm_set1_ps(a); }
 static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { return _mm_add_ps(a, b); }
 static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return _mm_sub_ps(a, b); }
 static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return _mm_mul_ps(a, b); }
+/* clang-format on */
 
 /* r >= 0 as its integer part and, in all lanes, its fraction. */
 static inline hairlut_quad hairlut_quad_split(float r, int *integer)
@@ -44,6 +47,7 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return _mm_sub_ps(all, _mm_cvtepi32_ps(truncated));
 }
 
+/* clang-format off */
 static inline hairlut_quad hairlut_quad_div(hairlut_quad a, hairlut_quad b) { return _mm_div_ps(a, b); }
 static inline hairlut_quad hairlut_quad_sqrt(hairlut_quad a) { return _mm_sqrt_ps(a); }
 static inline hairlut_quad hairlut_quad_max(hairlut_quad a, hairlut_quad b) { return _mm_max_ps(a, b); }
@@ -52,6 +56,7 @@ static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return _mm_andnot_
 static inline void hairlut_quad_store(float *p, hairlut_quad a) { _mm_storeu_ps(p, a); }
 static inline float hairlut_quad_first(hairlut_quad a) { return _mm_cvtss_f32(a); }
 static inline float hairlut_quad_second(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1)); }
+/* clang-format on */
 
 /* `negative` where a's sign bit is set, else `positive` */
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
@@ -66,7 +71,7 @@ static inline void hairlut_quad_transpose(hairlut_quad row[4])
     _MM_TRANSPOSE4_PS(row[0], row[1], row[2], row[3]);
 }
 
-/* Lane l of a and of b become lanes 0 and 1 of column l; what the other two hold is not used. */
+/* Lane l of a and of b become lanes 0 and 1 of column l; the other two are not used. */
 static inline void hairlut_quad_pair(hairlut_quad a, hairlut_quad b, hairlut_quad column[4])
 {
     const __m128 low = _mm_unpacklo_ps(a, b), high = _mm_unpackhi_ps(a, b);
@@ -108,7 +113,10 @@ static inline float hairlut_shifted(float s)
 
 typedef __m128i hairlut_tally; /* four counters */
 
-static inline hairlut_tally hairlut_tally_zero(void) { return _mm_setzero_si128(); }
+static inline hairlut_tally hairlut_tally_zero(void)
+{
+    return _mm_setzero_si128();
+}
 
 /* Counts the lanes that are at most x. */
 static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
@@ -125,11 +133,13 @@ static inline int hairlut_tally_sum(hairlut_tally a)
 #elif defined(HAIRLUT_QUAD_NEON)
 typedef float32x4_t hairlut_quad;
 
+/* clang-format off */
 static inline hairlut_quad hairlut_quad_load(const float *p) { return vld1q_f32(p); }
 static inline hairlut_quad hairlut_quad_all(float a) { return vdupq_n_f32(a); }
 static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { return vaddq_f32(a, b); }
 static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return vsubq_f32(a, b); }
 static inline hairlut_quad hairlut_quad_mul(hairlut_quad a, hairlut_quad b) { return vmulq_f32(a, b); }
+/* clang-format on */
 
 static inline hairlut_quad hairlut_quad_split(float r, int *integer)
 {
@@ -137,6 +147,7 @@ static inline hairlut_quad hairlut_quad_split(float r, int *integer)
     return vdupq_n_f32(r - (float)*integer);
 }
 
+/* clang-format off */
 static inline hairlut_quad hairlut_quad_div(hairlut_quad a, hairlut_quad b) { return vdivq_f32(a, b); }
 static inline hairlut_quad hairlut_quad_sqrt(hairlut_quad a) { return vsqrtq_f32(a); }
 static inline hairlut_quad hairlut_quad_max(hairlut_quad a, hairlut_quad b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
@@ -145,6 +156,7 @@ static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return vabsq_f32(a
 static inline void hairlut_quad_store(float *p, hairlut_quad a) { vst1q_f32(p, a); }
 static inline float hairlut_quad_first(hairlut_quad a) { return vgetq_lane_f32(a, 0); }
 static inline float hairlut_quad_second(hairlut_quad a) { return vgetq_lane_f32(a, 1); }
+/* clang-format on */
 
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
 {
@@ -184,14 +196,20 @@ static inline float hairlut_shifted(float s)
 
 typedef uint32x4_t hairlut_tally;
 
-static inline hairlut_tally hairlut_tally_zero(void) { return vdupq_n_u32(0); }
+static inline hairlut_tally hairlut_tally_zero(void)
+{
+    return vdupq_n_u32(0);
+}
 
 static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
 {
     return vsubq_u32(tally, vcleq_f32(a, vdupq_n_f32(x)));
 }
 
-static inline int hairlut_tally_sum(hairlut_tally a) { return (int)vaddvq_u32(a); }
+static inline int hairlut_tally_sum(hairlut_tally a)
+{
+    return (int)vaddvq_u32(a);
+}
 
 #else
 typedef struct hairlut_quad {
@@ -272,9 +290,11 @@ static inline hairlut_quad hairlut_quad_abs(hairlut_quad a)
     return a;
 }
 
+/* clang-format off */
 static inline void hairlut_quad_store(float *p, hairlut_quad a) { memcpy(p, a.lane, sizeof a.lane); }
 static inline float hairlut_quad_first(hairlut_quad a) { return a.lane[0]; }
 static inline float hairlut_quad_second(hairlut_quad a) { return a.lane[1]; }
+/* clang-format on */
 
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
 {
@@ -321,7 +341,10 @@ static inline float hairlut_shifted(float s)
 
 typedef int hairlut_tally;
 
-static inline hairlut_tally hairlut_tally_zero(void) { return 0; }
+static inline hairlut_tally hairlut_tally_zero(void)
+{
+    return 0;
+}
 
 static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
 {
@@ -330,7 +353,10 @@ static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_q
     return tally;
 }
 
-static inline int hairlut_tally_sum(hairlut_tally a) { return a; }
+static inline int hairlut_tally_sum(hairlut_tally a)
+{
+    return a;
+}
 #endif
 
 #endif

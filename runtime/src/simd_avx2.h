@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Eight lanes of AVX2 for batch_kernel.h, which says what each operation must do. */
 #ifndef HAIRLUT_SIMD_AVX2_H
 #define HAIRLUT_SIMD_AVX2_H
@@ -11,6 +12,7 @@ typedef __m256i whole;
 typedef __m256 mask;
 enum { LANES = 8 };
 
+/* clang-format off */
 static inline real load(const float *p) { return _mm256_loadu_ps(p); }
 static inline void store(float *p, real a) { _mm256_storeu_ps(p, a); }
 static inline real all(float a) { return _mm256_set1_ps(a); }
@@ -42,6 +44,7 @@ static inline whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_cas
 static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
 static inline real shifted(real a) { return _mm256_castsi256_ps(_mm256_srli_epi32(_mm256_castps_si256(a), 2)); }
 static inline real converted(whole a) { return _mm256_cvtepi32_ps(a); }
+/* clang-format on */
 
 static inline real quads(const float *p, const int *at)
 {

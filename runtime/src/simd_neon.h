@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Four lanes of AArch64 Advanced SIMD for batch_kernel.h, which says what each operation must do. */
 #ifndef HAIRLUT_SIMD_NEON_H
 #define HAIRLUT_SIMD_NEON_H
@@ -9,6 +10,7 @@ typedef int32x4_t whole;
 typedef uint32x4_t mask;
 enum { LANES = 4 };
 
+/* clang-format off */
 static inline real load(const float *p) { return vld1q_f32(p); }
 static inline void store(float *p, real a) { vst1q_f32(p, a); }
 static inline real all(float a) { return vdupq_n_f32(a); }
@@ -24,10 +26,12 @@ static inline mask both(mask a, mask b) { return vandq_u32(a, b); }
 static inline int every(mask m) { return vminvq_u32(m) != 0; }
 static inline mask numbers(real a, real b) { return both(vceqq_f32(a, a), vceqq_f32(b, b)); }
 static inline real choose(mask m, real a, real b) { return vbslq_f32(m, a, b); }
+/* clang-format on */
 static inline real by_sign(real a, real negative, real positive)
 {
     return choose(vreinterpretq_u32_s32(vshrq_n_s32(vreinterpretq_s32_f32(a), 31)), negative, positive);
 }
+/* clang-format off */
 static inline real smaller(real a, real b) { return choose(greater(b, a), a, b); }
 static inline real larger(real a, real b) { return choose(greater(a, b), a, b); }
 
@@ -43,6 +47,7 @@ static inline whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32
 static inline whole truncated(real a) { return vcvtq_s32_f32(a); }
 static inline real shifted(real a) { return vreinterpretq_f32_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 2)); }
 static inline real converted(whole a) { return vcvtq_f32_s32(a); }
+/* clang-format on */
 
 static inline void gather4(const float *p, const int *at, real x[4])
 {

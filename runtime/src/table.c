@@ -17,9 +17,11 @@ static hairlut_result validate_numbers(const hairlut_table *t, char *message)
     if (!t->texels)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "texels is NULL: expected width*height pairs of floats");
     if (t->width < 4 || t->height < 2 || t->width > MAX_SIDE || t->height > MAX_SIDE)
-        return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "size is %dx%d: expected a width of 4 to %d and a height of 2 to %d",
-                    t->width, t->height, (int)MAX_SIDE, (int)MAX_SIDE);
-    if (!hairlut_within(t->theta_r_min, t->theta_r_max, -hairlut_two_pi, hairlut_two_pi) || t->theta_r_max - t->theta_r_min < 1e-6f)
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                            "size is %dx%d: expected a width of 4 to %d and a height of 2 to %d", t->width, t->height,
+                            (int)MAX_SIDE, (int)MAX_SIDE);
+    if (!hairlut_within(t->theta_r_min, t->theta_r_max, -hairlut_two_pi, hairlut_two_pi) ||
+        t->theta_r_max - t->theta_r_min < 1e-6f)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
                             "theta_r_min %g, theta_r_max %g: expected increasing angles from -2 pi to 2 pi",
                             (double)t->theta_r_min, (double)t->theta_r_max);
@@ -28,8 +30,8 @@ static hairlut_result validate_numbers(const hairlut_table *t, char *message)
                             "domain_min %g, domain_max %g: expected increasing angles from -2 pi to 2 pi",
                             (double)t->domain_min, (double)t->domain_max);
     if (t->warp != HAIRLUT_WARP_UNIFORM && t->warp != HAIRLUT_WARP_OCTAVES)
-        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp is %d: expected HAIRLUT_WARP_UNIFORM or HAIRLUT_WARP_OCTAVES",
-                    (int)t->warp);
+        return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
+                            "warp is %d: expected HAIRLUT_WARP_UNIFORM or HAIRLUT_WARP_OCTAVES", (int)t->warp);
     if (t->warp == HAIRLUT_WARP_OCTAVES && !(t->warp_e >= 1e-12f && t->warp_e <= 1.0f))
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp_e is %g: expected 1e-12 to 1", (double)t->warp_e);
     return HAIRLUT_OK;
@@ -42,15 +44,16 @@ static hairlut_result validate_row(const hairlut_table *t, int j, char *message)
     for (int i = 0; i + 1 < t->width; ++i)
         if (!(row[(i + 1) * TEXEL] - row[i * TEXEL] >= narrowest_cell))
             return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
-                                "row %d, columns %d and %d: %.9g, %.9g: expected angles that increase by at least %g", j, i, i + 1,
-                                (double)row[i * TEXEL], (double)row[(i + 1) * TEXEL], (double)narrowest_cell);
+                                "row %d, columns %d and %d: %.9g, %.9g: expected angles that increase by at least %g", j, i,
+                                i + 1, (double)row[i * TEXEL], (double)row[(i + 1) * TEXEL], (double)narrowest_cell);
     if (first != t->domain_min || last != t->domain_max)
-        return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "row %d runs from %.9g to %.9g: expected the whole domain, %.9g to %.9g", j,
-                            (double)first, (double)last, (double)t->domain_min, (double)t->domain_max);
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                            "row %d runs from %.9g to %.9g: expected the whole domain, %.9g to %.9g", j, (double)first,
+                            (double)last, (double)t->domain_min, (double)t->domain_max);
     for (int i = 0; i < t->width; ++i)
         if (!(row[i * TEXEL + 1] >= least_slope && row[i * TEXEL + 1] <= largest_slope))
-            return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "row %d, column %d: dx/du is %.9g: expected %g to %g rad", j, i,
-                                (double)row[i * TEXEL + 1], (double)least_slope, (double)largest_slope);
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "row %d, column %d: dx/du is %.9g: expected %g to %g rad", j,
+                                i, (double)row[i * TEXEL + 1], (double)least_slope, (double)largest_slope);
     return HAIRLUT_OK;
 }
 

@@ -69,8 +69,8 @@ static void print_number(const char *field, float x)
 
 static void print_axis(const char *field, const hairlut_axis *axis)
 {
-    printf("     .%s = {.rows = array_%d, .ends = {array_%d, array_%d + %td}, .knots = array_%d,\n      ", field, rows_of(axis), cells_of(axis),
-           cells_of(axis), axis->ends[1] - axis->ends[0], knots_of(axis));
+    printf("     .%s = {.rows = array_%d, .ends = {array_%d, array_%d + %td}, .knots = array_%d,\n      ", field,
+           rows_of(axis), cells_of(axis), cells_of(axis), axis->ends[1] - axis->ends[0], knots_of(axis));
     print_number("row_origin", axis->row_origin);
     print_number("row_scale", axis->row_scale);
     print_number("row_last", axis->row_last);
@@ -79,8 +79,8 @@ static void print_axis(const char *field, const hairlut_axis *axis)
     print_number("origin", axis->origin);
     print_number("low", axis->low);
     print_number("high", axis->high);
-    printf("\n      .pitch = %d, .warp = %d, .columns = %d, .height = %d, .stride = %d, .step = %d, .grid = %d},\n", axis->pitch, axis->warp,
-           axis->columns, axis->height, axis->stride, axis->step, axis->grid);
+    printf("\n      .pitch = %d, .warp = %d, .columns = %d, .height = %d, .stride = %d, .step = %d, .grid = %d},\n",
+           axis->pitch, axis->warp, axis->columns, axis->height, axis->stride, axis->step, axis->grid);
 }
 
 /* The arrays of an axis come before the struct that names them. */
@@ -132,12 +132,13 @@ static int arc_of(const hairlut_model *model)
 
 static void print_entry(const char *name, const hairlut_model *model)
 {
-    printf("    {\"%s\", {.lobe_count = %d, .direct = %d, .multiple = %d, .lobes = lobes_%s,\n", name, model->lobe_count, model->direct,
-           model->multiple, name);
-    printf("      .mixture = {.theta_r = array_%d, .arc = array_%d, .corners = array_%d, .rows = %d, .columns = %d, .mirrored = %d, "
+    printf("    {\"%s\", {.lobe_count = %d, .direct = %d, .multiple = %d, .lobes = lobes_%s,\n", name, model->lobe_count,
+           model->direct, model->multiple, name);
+    printf("      .mixture = {.theta_r = array_%d, .arc = array_%d, .corners = array_%d, .rows = %d, .columns = %d, "
+           ".mirrored = %d, "
            ".turned = %d}}},\n",
-           theta_r_of(model), arc_of(model), corners_of(model), model->mixture.rows, model->mixture.columns, model->mixture.mirrored,
-           model->mixture.turned);
+           theta_r_of(model), arc_of(model), corners_of(model), model->mixture.rows, model->mixture.columns,
+           model->mixture.mirrored, model->mixture.turned);
 }
 
 /* The last part of a path. */
@@ -161,7 +162,7 @@ int main(int argc, char **argv)
             return 1;
         }
     }
-    fputs("/* By runtime/tools/embed.c from", stdout);
+    fputs("/* SPDX-License-Identifier: BSD-3-Clause */\n/* By runtime/tools/embed.c from", stdout);
     for (int k = 1; k < argc; ++k)
         printf(" %s", name_of(argv[k]));
     fputs("; not to be edited. */\n#include \"internal.h\"\n\n", stdout);

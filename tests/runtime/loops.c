@@ -1,4 +1,5 @@
-/* Loops over the one-direction functions, and the single axes behind them, so that tests can ask for a million at once.
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Loops over the one-direction functions, and the single axes behind them, so that tests can call them a million times at once.
  * Arrays are n floats; `angle` is 0 for theta, 1 for phi. */
 #include "axis.h"
 
@@ -35,11 +36,13 @@ static const float *shares_of(const hairlut_model *model, const float *shares, s
     return shares ? shares + i * (size_t)hairlut_lobe_count(model) : NULL;
 }
 
-LOOP void loop_sample_hair(const hairlut_model *model, const float *shares, size_t n, const float *theta_r, const float *phi_r,
-                           const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi, hairlut_sample *out)
+LOOP void loop_sample_hair(const hairlut_model *model, const float *shares, size_t n, const float *theta_r,
+                           const float *phi_r, const float *offset, const float *u_lobe, const float *u_theta,
+                           const float *u_phi, hairlut_sample *out)
 {
     for (size_t i = 0; i < n; ++i)
-        out[i] = hairlut_sample_hair(model, shares_of(model, shares, i), theta_r[i], phi_r[i], offset[i], u_lobe[i], u_theta[i], u_phi[i]);
+        out[i] = hairlut_sample_hair(model, shares_of(model, shares, i), theta_r[i], phi_r[i], offset[i], u_lobe[i],
+                                     u_theta[i], u_phi[i]);
 }
 
 LOOP void loop_pdf_hair(const hairlut_model *model, const float *shares, size_t n, const float *theta_r, const float *phi_r,
@@ -55,7 +58,8 @@ static const hairlut_axis *axis_of(const hairlut_model *model, int lobe, int ang
 }
 
 /* As the functions of hairlut.h return an angle: in the domain. */
-LOOP void axis_sample(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *u, float *x, float *pdf)
+LOOP void axis_sample(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *u,
+                      float *x, float *pdf)
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
@@ -66,7 +70,8 @@ LOOP void axis_sample(const hairlut_model *model, int lobe, int angle, size_t n,
     }
 }
 
-LOOP void axis_pdf(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *x, float *pdf)
+LOOP void axis_pdf(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *x,
+                   float *pdf)
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
@@ -77,14 +82,16 @@ LOOP void axis_pdf(const hairlut_model *model, int lobe, int angle, size_t n, co
     }
 }
 
-LOOP void axis_invert(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *x, float *u)
+LOOP void axis_invert(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *x,
+                      float *u)
 {
     for (size_t i = 0; i < n; ++i)
         u[i] = hairlut_axis_invert(axis_of(model, lobe, angle), theta_r[i], x[i]);
 }
 
 /* The width, in x, of the cell that contains x. */
-LOOP void axis_cell_width(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *x, float *width)
+LOOP void axis_cell_width(const hairlut_model *model, int lobe, int angle, size_t n, const float *theta_r, const float *x,
+                          float *width)
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
@@ -99,33 +106,33 @@ static int same_axis(const hairlut_axis *a, const hairlut_axis *b)
 {
     const size_t rows = (size_t)HAIRLUT_STORED(a->columns, a->height), cells = (size_t)HAIRLUT_CELLS(a->columns, a->height);
     const size_t knots = (size_t)(HAIRLUT_KNOT * HAIRLUT_HALF(a->columns));
-    return a->columns == b->columns && a->height == b->height && a->grid == b->grid && a->row_origin == b->row_origin
-           && a->row_scale == b->row_scale && a->warp == b->warp && a->e == b->e && a->scale == b->scale
-           && a->origin == b->origin && a->low == b->low && a->high == b->high
-           && memcmp(a->rows, b->rows, rows * sizeof(float)) == 0
-           && memcmp(a->ends[0], b->ends[0], cells * sizeof(float)) == 0
-           && memcmp(a->knots, b->knots, knots * sizeof(float)) == 0;
+    return a->columns == b->columns && a->height == b->height && a->grid == b->grid && a->row_origin == b->row_origin &&
+           a->row_scale == b->row_scale && a->warp == b->warp && a->e == b->e && a->scale == b->scale &&
+           a->origin == b->origin && a->low == b->low && a->high == b->high &&
+           memcmp(a->rows, b->rows, rows * sizeof(float)) == 0 &&
+           memcmp(a->ends[0], b->ends[0], cells * sizeof(float)) == 0 &&
+           memcmp(a->knots, b->knots, knots * sizeof(float)) == 0;
 }
 
 static int same_lobe(const hairlut_lobe *a, const hairlut_lobe *b)
 {
-    return strcmp(a->name, b->name) == 0 && same_axis(&a->theta, &b->theta) && a->uniform == b->uniform
-           && (a->uniform || (same_axis(&a->phi, &b->phi) && a->azimuth == b->azimuth));
+    return strcmp(a->name, b->name) == 0 && same_axis(&a->theta, &b->theta) && a->uniform == b->uniform &&
+           (a->uniform || (same_axis(&a->phi, &b->phi) && a->azimuth == b->azimuth));
 }
 
 static int same_mixture(const hairlut_mixture *a, const hairlut_mixture *b, int lobes)
 {
-    return a->rows == b->rows && a->columns == b->columns && a->mirrored == b->mirrored && a->turned == b->turned
-           && memcmp(a->theta_r, b->theta_r, 2 * (size_t)a->rows * sizeof(float)) == 0
-           && memcmp(a->arc, b->arc, 2 * (size_t)a->columns * sizeof(float)) == 0
-           && memcmp(a->corners, b->corners, (size_t)(HAIRLUT_CORNER * lobes * a->rows * a->columns) * sizeof(float)) == 0;
+    return a->rows == b->rows && a->columns == b->columns && a->mirrored == b->mirrored && a->turned == b->turned &&
+           memcmp(a->theta_r, b->theta_r, 2 * (size_t)a->rows * sizeof(float)) == 0 &&
+           memcmp(a->arc, b->arc, 2 * (size_t)a->columns * sizeof(float)) == 0 &&
+           memcmp(a->corners, b->corners, (size_t)(HAIRLUT_CORNER * lobes * a->rows * a->columns) * sizeof(float)) == 0;
 }
 
 /* Whether two models are the same, bit for bit. */
 LOOP int same_models(const hairlut_model *a, const hairlut_model *b)
 {
-    int same = a->lobe_count == b->lobe_count && a->direct == b->direct && a->multiple == b->multiple
-               && same_mixture(&a->mixture, &b->mixture, a->lobe_count);
+    int same = a->lobe_count == b->lobe_count && a->direct == b->direct && a->multiple == b->multiple &&
+               same_mixture(&a->mixture, &b->mixture, a->lobe_count);
     for (int k = 0; same && k < a->lobe_count; ++k)
         same = same_lobe(&a->lobes[k], &b->lobes[k]);
     return same;

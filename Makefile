@@ -77,6 +77,7 @@ demo: bake build
 lint: setup
 	@$(BIN)/ruff check --config precompute/pyproject.toml precompute tests runtime
 	@$(BIN)/ruff format --config precompute/pyproject.toml --check precompute tests runtime
+	@$(BIN)/clang-format --dry-run --Werror $(C_SOURCES)
 
 format: setup
 	@$(BIN)/ruff format --config precompute/pyproject.toml precompute tests runtime

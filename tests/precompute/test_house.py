@@ -2,6 +2,7 @@
 """The tree stays in order: imports go one way, and the folders that an engine copies contain nothing else."""
 
 import ast
+import subprocess
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -63,11 +64,47 @@ def test_a_cycle_is_noticed(tmp_path):
         TopologicalSorter(graph(tmp_path)).prepare()
 
 
-def test_the_plugin_knows_no_python_package():
-    for path in (ROOT / "runtime" / "mitsuba").rglob("*.py"):
-        assert not imports(path.read_text(), path.stem, False, top_only=False), path
+def test_the_runtime_imports_nothing_of_the_python_package():
+    for path in sorted((ROOT / "runtime").rglob("*.py")):
+        if "python" not in path.relative_to(ROOT / "runtime").parts:  # the bindings
+            assert not imports(path.read_text(), path.stem, False, top_only=False), path
 
 
 def test_the_textures_folder_contains_nothing_else():
     files = {path.name if path.suffix != ".exr" else ".exr" for path in LUTS.rglob("*") if path.is_file()}
     assert files <= {".exr", "manifest.json", "FORMAT.md"}
+
+
+LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
+SOURCES = {
+    *(".py", ".pyi", ".sh", ".cmake"),
+    *(".c", ".cpp", ".h", ".inl", ".cuh", ".glsl", ".hlsl", ".wgsl", ".js"),
+}
+
+
+def licensed(text: str) -> bool:
+    """Whether the licence stands in the first line, or in the second behind #! or #version."""
+    first, *rest = text.splitlines() or [""]
+    return LICENCE in (rest[0] if first.startswith(("#!", "#version")) and rest else first)
+
+
+def test_every_source_names_its_licence(sources):
+    assert [path for path in sources if not licensed((ROOT / path).read_text())] == []
+
+
+def test_a_missing_licence_is_noticed():
+    assert licensed(f"# {LICENCE}\n")
+    assert licensed(f"#!/bin/sh\n# {LICENCE}\n")
+    assert not licensed("")
+    assert not licensed(f"import os\n# {LICENCE}\n")
+
+
+@pytest.fixture(scope="module")
+def sources() -> list[str]:
+    """The source files that git knows, or that it would add."""
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, text=True,
+                            capture_output=True, check=False)  # fmt: skip
+    if listed.returncode != 0:
+        pytest.skip("not a git checkout")
+    names = [name for name in listed.stdout.splitlines() if (ROOT / name).is_file()]
+    return [name for name in names if Path(name).suffix in SOURCES or Path(name).name == "CMakeLists.txt"]

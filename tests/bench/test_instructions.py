@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Instructions a sample, counted by callgrind: the guard against getting slower, on busy machines too.
 
-Valgrind runs no AVX-512, so the functions over arrays are counted on their AVX2 kernels. The pinned numbers
-are those of gcc 12 -O2; other compilers are held to the same within the tolerance.
+The pinned numbers are those of gcc 12 -O2; other compilers are held to the same within the tolerance.
 """
 
 import platform
@@ -15,18 +14,18 @@ from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    "sample_direct": 304,
-    "sample_multiple": 220,
-    "pdf_direct": 436,
-    "pdf_multiple": 228,
-    "sample_hair": 889,
-    "pdf_hair": 950,
-    "sample_direct_n": 308,
-    "sample_multiple_n": 221,
-    "pdf_direct_n": 436,
-    "pdf_multiple_n": 228,
-    "sample_hair_n": 898,
-    "pdf_hair_n": 959,
+    "sample_direct": 256,
+    "sample_multiple": 228,
+    "pdf_direct": 406,
+    "pdf_multiple": 255,
+    "sample_hair": 797,
+    "pdf_hair": 791,
+    "sample_direct_n": 49,
+    "sample_multiple_n": 30,
+    "pdf_direct_n": 89,
+    "pdf_multiple_n": 49,
+    "sample_hair_n": 204,
+    "pdf_hair_n": 168,
 }
 
 

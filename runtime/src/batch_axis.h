@@ -18,19 +18,19 @@ enum { BLOCK = 256, ROOM = BLOCK + LANES };
 
 /* Samples on an axis. A pass stores its results in place of what it no longer needs, so that all of it stays in the first-level
  * cache, beside the table. */
-typedef struct draws {
+typedef struct axis_samples {
     int at[BLOCK];   /* the offset of the cell */
     int knot[BLOCK]; /* the offset of its knot */
-    float t[BLOCK];  /* the weight of the row above; from fetch_draws on: the blended cell's w */
-    float m[BLOCK];  /* of hairlut_place; from fetch_draws on: (m - u0) / h */
+    float t[BLOCK];  /* the weight of the row above; from fetch_samples on: the blended cell's w */
+    float m[BLOCK];  /* of hairlut_place; from fetch_samples on: (m - u0) / h */
     float x0[BLOCK]; /* of the blended cell, as d0 and d1 */
     float d0[BLOCK];
     float d1[BLOCK];
     float rate[BLOCK]; /* 1 / h */
-} draws;
+} axis_samples;
 
 /* Directions on an axis. */
-typedef struct searches {
+typedef struct axis_searches {
     int j[BLOCK];    /* the row */
     int cell[BLOCK]; /* as far as it is known, counted from the low end */
     int at[BLOCK];   /* where to read on: an offset among the rows, then among the cells */
@@ -40,7 +40,7 @@ typedef struct searches {
     float d0[BLOCK];
     float d1[BLOCK];
     float width[BLOCK]; /* h, scaled */
-} searches;
+} axis_searches;
 
 typedef struct cells {
     real x0, d0, w, d1;
@@ -70,7 +70,7 @@ static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask
 }
 
 /* hairlut_axis_place, and where to read */
-static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, draws *q)
+static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, axis_samples *q)
 {
     for (size_t s = 0; s < n; s += LANES) {
         real t;
@@ -87,7 +87,8 @@ static inline void place(const hairlut_axis *axis, size_t n, const float *theta_
 }
 
 /* hairlut_count, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0 */
-HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t n, const searches *q, int size, int *counts)
+HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t n, const axis_searches *q, int size,
+                          int *counts)
 {
     const float *above = groups + (size == HAIRLUT_SMALL_GROUP ? HAIRLUT_SMALL_GROUP : axis->stride);
 #ifdef HAIRLUT_COUNTS
@@ -101,7 +102,7 @@ HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t 
 }
 
 /* hairlut_axis_begin_search with groups of `size`: the first cell of the block, and the offset of its first group */
-HAIRLUT_INLINE void search_blocks(const hairlut_axis *axis, size_t n, searches *q, int size)
+HAIRLUT_INLINE void search_blocks(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
 {
     const int step = axis->step, floats = HAIRLUT_LINE / size * step; /* of a block */
     count(axis, axis->rows, n, q, size, q->cell);
@@ -113,7 +114,7 @@ HAIRLUT_INLINE void search_blocks(const hairlut_axis *axis, size_t n, searches *
 }
 
 /* hairlut_halve */
-static inline void halve_blocks(const hairlut_axis *axis, size_t n, searches *q)
+static inline void halve_blocks(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     const float *groups = axis->rows + HAIRLUT_LINE;
     for (size_t k = 0; axis->step > HAIRLUT_GROUP && k < n; ++k) {
@@ -124,7 +125,7 @@ static inline void halve_blocks(const hairlut_axis *axis, size_t n, searches *q)
 }
 
 /* hairlut_axis_end_search from the count on, and where to read the cell: hairlut_axis_nearer */
-HAIRLUT_INLINE void search_groups(const hairlut_axis *axis, size_t n, searches *q, int size)
+HAIRLUT_INLINE void search_groups(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
 {
     int counts[BLOCK];
     count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
@@ -136,7 +137,7 @@ HAIRLUT_INLINE void search_groups(const hairlut_axis *axis, size_t n, searches *
     }
 }
 
-static inline void search_large(const hairlut_axis *axis, size_t n, searches *q)
+static inline void search_large(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     search_blocks(axis, n, q, HAIRLUT_GROUP);
     halve_blocks(axis, n, q);
@@ -154,7 +155,7 @@ static inline cells load_cells(const hairlut_axis *axis, const int *at, real bel
     return cell;
 }
 
-static inline void fetch_draws(const hairlut_axis *axis, size_t n, draws *q)
+static inline void fetch_samples(const hairlut_axis *axis, size_t n, axis_samples *q)
 {
     for (size_t s = 0; s < n; s += LANES) {
         real knot[HAIRLUT_KNOT];
@@ -170,13 +171,13 @@ static inline void fetch_draws(const hairlut_axis *axis, size_t n, draws *q)
     }
 }
 
-static inline void search_small(const hairlut_axis *axis, size_t n, searches *q)
+static inline void search_small(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     search_blocks(axis, n, q, HAIRLUT_SMALL_GROUP);
     search_groups(axis, n, q, HAIRLUT_SMALL_GROUP);
 }
 
-static inline void fetch_searches(const hairlut_axis *axis, size_t n, searches *q)
+static inline void fetch_searches(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     for (size_t s = 0; s < n; s += LANES) {
         real knot[HAIRLUT_KNOT];
@@ -194,7 +195,7 @@ static inline void fetch_searches(const hairlut_axis *axis, size_t n, searches *
 }
 
 /* hairlut_draw_two, of an axis, of samples s .. s+LANES-1 that were placed and fetched */
-static inline real draw(const draws *q, size_t s, real *slope)
+static inline real draw(const axis_samples *q, size_t s, real *slope)
 {
     const real along = load(q->m + s), w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s);
     const real xi = larger(along, all(0.0f)), rest = larger(sub(all(1.0f), along), all(0.0f));
@@ -206,7 +207,7 @@ static inline real draw(const draws *q, size_t s, real *slope)
 }
 
 /* hairlut_axis_begin_search, but for the count. Returns hairlut_axis_contains. */
-static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, searches *q, size_t s)
+static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, axis_searches *q, size_t s)
 {
     const real low = all(axis->low), high = all(axis->high);
     real t;
@@ -219,7 +220,7 @@ static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, 
 }
 
 /* The rest of the search, and the cells. */
-static inline void end_search(const hairlut_axis *axis, size_t n, searches *q)
+static inline void end_search(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     if (HAIRLUT_IS_SMALL(axis->columns))
         search_small(axis, n, q);
@@ -229,7 +230,7 @@ static inline void end_search(const hairlut_axis *axis, size_t n, searches *q)
 }
 
 /* hairlut_invert_four, of an axis: bend and root of directions s .. s+LANES-1 */
-static inline real inverse(const searches *q, size_t s, real *root_of)
+static inline real inverse(const axis_searches *q, size_t s, real *root_of)
 {
     const real w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), from = load(q->x + s), to = sub(w, from);
     const real wx = mul(w, from), wz = mul(w, to);

@@ -28,13 +28,13 @@ static inline size_t whole_vectors(size_t n)
     return (n + LANES - 1) / LANES * LANES;
 }
 
-static inline real side_at(const hairlut_model *model, const mixes *m, size_t s)
+static inline real side_at(const hairlut_model *model, const mixture_block *m, size_t s)
 {
     return model->mixture.mirrored ? load(m->side + s) : all(1.0f);
 }
 
 /* hairlut_turned_relative, of samples s .. s+LANES-1 */
-static inline real turned_relative(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t s)
+static inline real turned_relative(const hairlut_model *model, int k, const directions *d, const mixture_block *m, size_t s)
 {
     const hairlut_mixture *mixture = &model->mixture;
     const real relative = relative_azimuth(model->lobes[k].azimuth, load(d->r + s), load(d->i + s));
@@ -46,7 +46,7 @@ static inline real turned_relative(const hairlut_model *model, int k, const dire
 
 /* The density of lobe k of directions from .. from+n-1, to the same places of pdf. What is written beyond, up to a whole vector,
  * is a density too. */
-static inline void range_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t from,
+static inline void range_density(const hairlut_model *model, int k, const directions *d, const mixture_block *m, size_t from,
                                  size_t n, float *pdf)
 {
     float azimuth[BLOCK];
@@ -57,10 +57,10 @@ static inline void range_density(const hairlut_model *model, int k, const direct
 }
 
 /* The same of those of the first n that have a share of the lobe and are not in from .. to-1; 0 for the others. */
-static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixes *m, size_t n,
+static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixture_block *m, size_t n,
                                 size_t from, size_t to, float *pdf)
 {
-    float azimuth[ROOM], theta_r[BLOCK], theta_i[BLOCK], asked[BLOCK], density[BLOCK];
+    float azimuth[ROOM], theta_r[BLOCK], theta_i[BLOCK], relative[BLOCK], density[BLOCK];
     int list[BLOCK];
     size_t count = 0;
     for (size_t s = 0; s < n; s += LANES)
@@ -75,9 +75,9 @@ static inline void list_density(const hairlut_model *model, int k, const directi
         const int at = s < count ? list[s] : list[0];
         theta_r[s] = d->theta_r[at];
         theta_i[s] = d->theta_i[at];
-        asked[s] = azimuth[at];
+        relative[s] = azimuth[at];
     }
-    lobe_density(&model->lobes[k], padded, theta_r, theta_i, asked, density);
+    lobe_density(&model->lobes[k], padded, theta_r, theta_i, relative, density);
     for (size_t s = 0; s < count; ++s)
         pdf[list[s]] = density[s];
 }
@@ -88,7 +88,7 @@ typedef struct ranges {
 } ranges;
 
 /* Adds weight * density over the lobes to sum. Those that drew a lobe have its density in `drawn`; NULL: none drew any. */
-static inline void add_densities(const hairlut_model *model, const directions *d, const mixes *m, size_t n,
+static inline void add_densities(const hairlut_model *model, const directions *d, const mixture_block *m, size_t n,
                                  const ranges *own, const float *drawn, float *sum)
 {
     float pdf[ROOM];
@@ -114,7 +114,7 @@ static inline void add_densities(const hairlut_model *model, const directions *d
 }
 
 /* What a group of whole vectors reads beyond the end of a block. */
-static inline void end_directions(directions *d, mixes *m, size_t n)
+static inline void end_directions(directions *d, mixture_block *m, size_t n)
 {
     store(d->theta_r + n, all(0.0f));
     store(d->r + n, all(0.0f));
@@ -127,10 +127,10 @@ static inline void end_directions(directions *d, mixes *m, size_t n)
 static inline void pdf_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, float *out)
 {
     directions d;
-    mixes m;
+    mixture_block m;
     float sum[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
-    begin_mixes(model, in->given, &m);
+    begin_mixtures(model, in->given, &m);
     end_directions(&d, &m, n);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), theta_i = load(in->theta_i + s);
@@ -193,12 +193,12 @@ typedef struct numbers_drawn {
 } numbers_drawn;
 
 /* The mixtures of a block, and its inputs, in the order of the lobes drawn. What is valid stays in the order of the inputs. */
-static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, mixes *m, directions *d,
+static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, mixture_block *m, directions *d,
                            numbers_drawn *u, ranges *own, int *order)
 {
     float r[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
-    begin_mixes(model, in->given, m);
+    begin_mixtures(model, in->given, m);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), u_lobe = load(in->u_lobe + s);
         const real offset = in->offset ? load(in->offset + s) : all(0.0f);
@@ -225,7 +225,7 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
 }
 
 /* hairlut_turned_incident, of samples s .. s+LANES-1 */
-static inline real turned_incident(const hairlut_model *model, int k, const mixes *m, real r, real x, size_t s)
+static inline real turned_incident(const hairlut_model *model, int k, const mixture_block *m, real r, real x, size_t s)
 {
     const hairlut_mixture *mixture = &model->mixture;
     const real turn = mixture->turned ? load(m->turn[k] + s) : all(0.0f);
@@ -234,7 +234,7 @@ static inline real turned_incident(const hairlut_model *model, int k, const mixe
 }
 
 /* What lobe k draws for its range of the sorted samples. Beyond its end, up to a whole vector, the next lobe writes again. */
-static inline void draw_range(const hairlut_model *model, int k, const mixes *m, const numbers_drawn *u, size_t from,
+static inline void draw_range(const hairlut_model *model, int k, const mixture_block *m, const numbers_drawn *u, size_t from,
                               size_t to, directions *d, float *drawn, float *cosines)
 {
     const hairlut_lobe *lobe = &model->lobes[k];
@@ -265,7 +265,7 @@ static inline void sample_hair_block(const hairlut_model *model, size_t n, const
 {
     directions d;
     numbers_drawn u;
-    mixes m;
+    mixture_block m;
     ranges own;
     int order[ROOM];
     float drawn[ROOM], cosines[ROOM], pdf[BLOCK], solid[BLOCK];

@@ -11,13 +11,13 @@
 static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *u_theta,
                              const float *u_phi, float *theta_i, float *azimuth, float *pdf)
 {
-    draws theta, phi;
+    axis_samples theta, phi;
     place(&lobe->theta, n, theta_r, u_theta, &theta);
     if (!lobe->uniform)
         place(&lobe->phi, n, theta_r, u_phi, &phi);
-    fetch_draws(&lobe->theta, n, &theta);
+    fetch_samples(&lobe->theta, n, &theta);
     if (!lobe->uniform)
-        fetch_draws(&lobe->phi, n, &phi);
+        fetch_samples(&lobe->phi, n, &phi);
     for (size_t s = 0; s < n; s += LANES) {
         real theta_slope, phi_slope;
         store(theta_i + s, draw(&theta, s, &theta_slope));
@@ -36,7 +36,7 @@ static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *th
 static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *theta_i,
                                 const float *azimuth, float *pdf)
 {
-    searches theta, phi;
+    axis_searches theta, phi;
     float contains[BLOCK]; /* 1, or 0 where the lobe's domain does not contain the direction */
     for (size_t s = 0; s < n; s += LANES) {
         const real r = load(theta_r + s);

@@ -14,7 +14,7 @@ typedef struct given_shares {
 } given_shares;
 
 /* The mixtures of a block. Of arrays of lobes, as many are set as the model has. */
-typedef struct mixes {
+typedef struct mixture_block {
     float weight[HAIRLUT_MAX_LOBES][ROOM]; /* share / sum; where no density can be given, any number or NaN */
     float turn[HAIRLUT_MAX_LOBES][ROOM];   /* only set where a lobe of the model is turned */
     float side[ROOM];                      /* only set where the model is mirrored */
@@ -24,7 +24,7 @@ typedef struct mixes {
     int alone;                    /* whether weights are those of the model's only node, and not stored */
     int some[HAIRLUT_MAX_LOBES];  /* whether any of the block has a share of the lobe */
     int every[HAIRLUT_MAX_LOBES]; /* whether all have */
-} mixes;
+} mixture_block;
 
 enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, more are halved for single samples */
 
@@ -116,8 +116,8 @@ static inline int is_alone(const hairlut_model *model)
 }
 
 /* hairlut_mixture_at of samples s .. s+LANES-1; returns the shares and their sum */
-static inline real mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mixes *m, size_t s,
-                          real share[HAIRLUT_MAX_LOBES])
+static inline real mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mixture_block *m,
+                          size_t s, real share[HAIRLUT_MAX_LOBES])
 {
     const hairlut_mixture *mixture = &model->mixture;
     const int count = model->lobe_count, alone = is_alone(model);
@@ -142,7 +142,8 @@ static inline real mix_at(const hairlut_model *model, given_shares given, real t
 }
 
 /* The weights of those shares; `wanted`, whether the arguments have a density. */
-static inline void store_weights(const hairlut_model *model, const real *share, real sum, mask wanted, mixes *m, size_t s)
+static inline void store_weights(const hairlut_model *model, const real *share, real sum, mask wanted, mixture_block *m,
+                                 size_t s)
 {
     const mask valid = both(wanted, greater(sum, all(0.0f)));
     const real unit = over(all(1.0f), sum);
@@ -153,7 +154,8 @@ static inline void store_weights(const hairlut_model *model, const real *share, 
 }
 
 /* hairlut_mixture_choose */
-static inline void choose_lobes(const hairlut_model *model, const real *share, real sum, real u_lobe, mixes *m, size_t s)
+static inline void choose_lobes(const hairlut_model *model, const real *share, real sum, real u_lobe, mixture_block *m,
+                                size_t s)
 {
     const real target = mul(clamp(u_lobe, all(0.0f), all(1.0f)), sum);
     real below = all(0.0f), chosen = all(0.0f);
@@ -165,19 +167,19 @@ static inline void choose_lobes(const hairlut_model *model, const real *share, r
 }
 
 /* The weight of lobe k of samples s .. s+LANES-1 */
-static inline real weight_at(const hairlut_model *model, const mixes *m, int k, size_t s)
+static inline real weight_at(const hairlut_model *model, const mixture_block *m, int k, size_t s)
 {
     return m->alone ? all(model->mixture.corners[HAIRLUT_CORNER * k + 3]) : load(m->weight[k] + s);
 }
 
-static inline void begin_mixes(const hairlut_model *model, given_shares given, mixes *m)
+static inline void begin_mixtures(const hairlut_model *model, given_shares given, mixture_block *m)
 {
     m->all_valid = 1;
     m->alone = is_alone(model) && !given.shares;
 }
 
 /* Fills `some` and `every` once the weights of n samples are set. */
-static inline void sum_up(const hairlut_model *model, size_t n, mixes *m)
+static inline void sum_up(const hairlut_model *model, size_t n, mixture_block *m)
 {
     for (int k = 0; k < model->lobe_count; ++k) {
         real least = all(1.0f), most = all(0.0f);

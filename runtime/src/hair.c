@@ -11,7 +11,7 @@ static float incident_azimuth(const hairlut_model *model, const hairlut_mix *mix
     return hairlut_turned_incident(lobe->azimuth, r, x, model->mixture.turned ? mix->turn[k] : 0.0f, mix->side);
 }
 
-/* What lobe k's azimuth table is asked for; r and i are phi_r and phi_i in [-pi, pi). */
+/* The azimuth by which lobe k's table is searched; r and i are phi_r and phi_i in [-pi, pi). */
 static float lobe_azimuth(const hairlut_model *model, const hairlut_mix *mix, int k, float r, float i)
 {
     const hairlut_mixture *m = &model->mixture;

@@ -68,7 +68,7 @@ HAIRLUT_INLINE float hairlut_lobe_begin_search(const hairlut_lobe *lobe, float t
     return (float)((next[0].x == theta_i) & (next[1].x == phi));
 }
 
-/* The root and bend of all searches; so many floats are written as whole quads hold. */
+/* The root and bend of all searches; whole quads are written. */
 HAIRLUT_INLINE void hairlut_end_searches(const hairlut_searches *under_way, float *root, float *bend)
 {
     for (int first = 0; first < under_way->count; first += 4) {

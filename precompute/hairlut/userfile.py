@@ -27,6 +27,10 @@ from .nulldevice import null_device
 from .text import decode, read_bytes
 
 EXPECTED = "a Python file"
+REMEDIES = {  # by a part of the error's text: what a formula written for single numbers runs into
+    "converted to Python scalars": "the arguments are arrays: use NumPy's functions instead of math's",
+    "truth value of an array": "the arguments are arrays: use np.where, not if, and np.maximum, not max",
+}
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,11 @@ def reason(error: BaseException) -> str:
     message = (str(error).splitlines() or [""])[0]
     text = f"{type(error).__name__}: {message}" if message else type(error).__name__
     if isinstance(error, ModuleNotFoundError):
-        return f"{text}: import it at the file's top, from beside the file or installed for {sys.executable}"
+        remedy = f"import it at the file's top, and put it beside the file or install it for {sys.executable}"
+        return f"{text}: {remedy}"
+    for part, remedy in REMEDIES.items():
+        if part in message:
+            return f"{text}: {remedy}"
     if isinstance(error, SyntaxError) and error.lineno:
         return text.replace(f" ({Path(error.filename or '').name}, line {error.lineno})", "")
     return text

@@ -199,8 +199,8 @@ static hairlut_result fail_attribute(const hairlut_exr_file *file, exr_result_t 
 {
     if (code == EXR_ERR_NO_ATTR_BY_NAME)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE,
-                                "%s is missing: expected a %s attribute; bake the model again", attribute, type);
-    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is not a %s attribute, as expected; bake the model again",
+                                "%s is missing: expected an attribute of type %s; bake the model again", attribute, type);
+    return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is not of type %s, as expected; bake the model again",
                             attribute, type);
 }
 

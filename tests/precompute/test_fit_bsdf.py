@@ -2,6 +2,7 @@
 """From a file that defines bsdf to textures whose promise an independent quadrature confirms."""
 
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +133,7 @@ def test_the_promise_is_in_the_header(tmp_path, capsys):
     [
         ("np.cos(theta_i)", "have the cosine already"),
         ("9 * np.cos(theta_i)**0", "times the light that it receives"),
+        ("1e300", "times the light that it receives"),
     ],
 )
 def test_a_likely_wrong_measure_is_said_and_the_model_still_written(tmp_path, capsys, factor, warned):
@@ -141,7 +143,9 @@ def bsdf(theta_r, theta_i, phi):
     half = (theta_i + theta_r) / 2
     return np.exp(-0.5 * (half / 0.15) ** 2) * np.exp(np.cos(phi)) / np.cos(half) * {factor}
 """
-    _, _, err = run(fitted(tmp_path, text), tmp_path / "out", capsys)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        _, _, err = run(fitted(tmp_path, text), tmp_path / "out", capsys)
     assert warned in err
 
 
@@ -155,7 +159,9 @@ def bsdf(theta_r, theta_i, phi):
         ("import sys\nsys.exit()\n", "hair.py:2: calls sys.exit()"),
         ("def bsdf(theta_r, theta_i, phi):\n    return input()\n", "hair.py:2"),
         ("def bsdf(theta_r, theta_i, phi):\n    return 1 / 0\n", "hair.py:2: ZeroDivisionError"),
-        ("def bsdf(theta_r, theta_i, phi):\n    return 0.0 * theta_i\n", "no light"),
+        ("def bsdf(theta_r, theta_i, phi):\n    return 0.0 * theta_i\n", "hair.py: f is 0 wherever it was"),
+        ("import math\ndef bsdf(theta_r, theta_i, phi):\n    return math.cos(phi)\n", "instead of math's"),
+        ("def bsdf(theta_r, theta_i, phi):\n    return 1.0 if phi > 1 else 2.0\n", "use np.where, not if"),
     ],
 )
 def test_a_file_that_is_wrong_is_refused_in_one_line(tmp_path, capsys, text, expected):

@@ -140,7 +140,12 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
 def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: Report) -> tuple:
     from ..fit import doubts, refine, says
 
-    found = refine.fit(given, name, args.tolerance, args.lobes, args.budget, report)
+    try:
+        found = refine.fit(given, name, args.tolerance, args.lobes, args.budget, report)
+    except HairlutError as error:
+        if str(error).startswith(str(args.data)):
+            raise
+        raise HairlutError(f"{args.data}: {error}") from None
     if args.plot:
         _plot(given, found, args.plot, name)
     figures = {"data": str(what), **says.data(found, args.tolerance)}

@@ -48,7 +48,7 @@ def _reciprocity(hair: Hair) -> str:
     a, b = np.radians(random.uniform(-70, 70, (2, PAIRS)))
     phi = random.uniform(0, TWO_PI, PAIRS)
     there, back = _mean(hair, a, b, phi), _mean(hair, b, a, TWO_PI - phi)
-    bright = np.sqrt(there * back)
+    bright = np.sqrt(there) * np.sqrt(back)
     kept = bright > np.median(bright)
     if not kept.any():
         return ""

@@ -155,7 +155,7 @@ def _cells(hair: Hair, theta_r: Array, angle: Array, axes: Axes) -> Cells:
     edges = cells.theta_edges(hair.density, theta_r, some, axes.theta_i)
     data = cells.of_density(hair.density, theta_r, offset, edges, axes.phi)
     if not data.light.any():
-        raise HairlutError("the hair scatters no light: its f is 0 everywhere")
+        raise HairlutError("f is 0 wherever it was evaluated: no light, or only between the directions tried")
     return data
 
 

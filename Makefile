@@ -51,7 +51,8 @@ setup: check $(VENV)/.core
 extras: setup
 	@./runtime/packages.sh extras
 	@for extra in $(EXTRAS); do \
-		$(BIN)/python -m pip install --quiet --disable-pip-version-check $$extra || echo "hairlut: could not install $$extra: its tests are skipped"; \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check $$extra >$(VENV)/extras.log 2>&1 || \
+			echo "hairlut: could not install $$extra: its tests are skipped ($$(grep -i -m1 error: $(VENV)/extras.log))"; \
 	done
 
 bake: setup

@@ -30,7 +30,8 @@ class Machine:
             (self.bin / name).symlink_to(shutil.which(name))
 
     def program(self, name: str, text: str) -> None:
-        """A shell script on the PATH."""
+        """A shell script on the PATH, in the place of a link to the real one if there is one."""
+        (self.bin / name).unlink(missing_ok=True)
         (self.bin / name).write_text(f"#!/bin/sh\n{text}\n")
         (self.bin / name).chmod(0o755)
 

@@ -122,6 +122,23 @@ def test_the_number_of_lobes_can_be_fixed(tmp_path, capsys):
     assert told["relative_variance"] > 0.2
 
 
+def test_nothing_turns_where_only_shares_depend_on_the_offset(tmp_path, capsys):
+    text = NEAR.replace(" + 0.7 * gamma", "").replace(" + 2 * gamma", "")
+    model, told, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys)
+    assert told["relative_variance"] < 0.01
+    assert not model.mixture.turn.any()
+    assert np.ptp(model.mixture.share[0, 18]) > 0.2
+
+
+def test_a_uniform_azimuth_takes_no_table(tmp_path, capsys):
+    text = NEAR[: NEAR.index("def bsdf")] + (
+        "def bsdf(theta_r, theta_i, phi):\n    return highlight(theta_r, theta_i, 0.0, 0.3, phi, 0.0)\n"
+    )
+    model, told, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys)
+    assert told["relative_variance"] < 0.01
+    assert [lobe.phi for lobe in model.lobes] == [None]
+
+
 def test_the_promise_is_in_the_header(tmp_path, capsys):
     model, told, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys)
     assert model.errors["mixture"]["relative_variance"] == pytest.approx(told["relative_variance"], rel=1e-3)

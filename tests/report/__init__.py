@@ -31,8 +31,8 @@ PAGES = {
         ("In a renderer", "render.md", "variance and bias of a rendered lock of hair"),
         ("Mitsuba", "variants.md", "what a picture costs with the C++ plugin and with the Dr.Jit BSDF"),
     ),
-    "python -m report.fitted_hair": (
-        ("A scene's own hair", "fit.md", "tables fitted to a hair BSDF, beside that BSDF's own sampler"),
+    "make fits": (
+        ("Fitted hairs", "fit.md", "42 hairs as functions, fitted, beside the samplers of their authors"),
     ),
 }
 """By the command that makes them: title, file, what the page shows."""

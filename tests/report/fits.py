@@ -24,12 +24,12 @@ from report import fits_page
 from report.hairs import Subject, far_field, near_field
 from report.places import PAGES
 
-VIEWERS = np.radians(-90 + 22.5 * (np.arange(8) + 0.5) + 2.1)  # even over the hemisphere, between rows
-OFFSETS = (np.arange(6) + 0.41) / 6
-POINTS = 720, 512
+VIEWERS = np.radians(-90 + 30.0 * (np.arange(6) + 0.5) + 2.1)  # even over the hemisphere, between rows
+OFFSETS = (np.arange(5) + 0.41) / 5
+POINTS = 432, 384
 BRIGHT = 1e-4
 TOLERANCE, BUDGET = 0.01, 600.0
-DATA = PAGES / "fits.json"
+DATA = PAGES / "fit.json"
 
 
 def measured(subject: Subject) -> dict:
@@ -111,7 +111,7 @@ def main() -> int:
             subject.name, f"V {np.mean(shown['variance']):.4f}", f"weight {shown['weight']:.1f}", flush=True
         )
         write_whole(args.data, f"{json.dumps(results, indent=1)}\n".encode())
-    print(write_whole(PAGES / "fits.md", fits_page.page(results).encode()))
+    print(write_whole(PAGES / "fit.md", fits_page.page(results).encode()))
     return 0
 
 

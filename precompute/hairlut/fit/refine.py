@@ -4,7 +4,8 @@
 A fit has five axes: rows of theta_r, offsets, cells of theta_i and of phi, and lobes. It starts coarse. What
 the baked model loses is measured on its nodes, between rows, and between offsets. The axis whose loss stands
 out is refined, until what is measured at random viewers is within the tolerance of what so many lobes can
-reach, or the budget is spent."""
+reach, or the budget is spent.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +17,11 @@ import numpy as np
 
 from ..errors import HairlutError
 from ..lobes import Array
-from ..mixture import Mixture
+from ..mixture import Mixture, wrap
 from ..model import BakedLobe, BakedModel
 from . import cells, promise, smooth, tables
 from .cells import Cells
+from .factor import variance
 from .hair import Hair
 from .lobesfit import Row, first_row, next_row, one_more, same_shapes
 from .turning import TWO_PI
@@ -33,6 +35,7 @@ HEAVIEST = 10.0  # a weight that is a firefly
 FITTED_OFFSETS = 13  # offsets by which shapes are fitted; shares and turns are at all
 START = {"theta_r": 37, "offset": 11, "theta_i": 32}
 LIMITS = {"theta_r": 145, "offset": 65, "theta_i": 128, "phi": 512}
+FARTHEST = 0.5  # rad by which a turn is expected to go on from row to row
 TABLE_PART = 0.15  # of the tolerance that each table may lose
 SHARE_OF_AXIS = 0.2  # of the tolerance above which an axis is refined
 WEIGHT_PARTS = 5.0  # what a weight that is too large counts, or a viewer whose V is
@@ -77,10 +80,16 @@ def fit(hair: Hair, name: str, tolerance: float, lobes: int | None, budget: floa
     random = np.random.default_rng(0)
     axes = _first_axes(hair)
     count = lobes or _lobes(hair, axes, report)
+    turning = hair.offsets and _turns(hair, axes, count)
     best: Fitted | None = None
+
+    def so_far(stage: str, share: float) -> None:
+        reached = f"V {best.promised.variance.mean():.4f} so far, " if best else ""
+        report(f"{reached}{stage}", share)
+
     while True:
         began = perf_counter()
-        found = _fit_once(hair, name, axes, count, tolerance, random, report)
+        found = _fit_once(hair, name, axes, count, turning, tolerance, random, so_far)
         if best is None or _score(found, tolerance) < _score(best, tolerance):
             best = found
         seconds = perf_counter() - began
@@ -137,16 +146,24 @@ def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
     theta_r = hair.rows(13)[[2, 6, 9]]
     data = _cells(hair, theta_r, hair.angles(axes.offset), axes)
     angle = hair.angles(axes.offset)
-    variance: list[float] = []
+    reached: list[float] = []
     rows: list[Row | None] = [None] * len(data.mass)
     for count in range(1, MAX_LOBES + 1):
         report("choosing lobes", count / MAX_LOBES)
         rows = [one_more(row, mass, angle, hair.offsets) for row, mass in zip(rows, data.mass, strict=True)]
-        variance.append(np.mean([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)]))
-        if variance[-1] < GAIN:
+        reached.append(np.mean([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)]))
+        if reached[-1] < GAIN:
             break
-    least = min(variance)
-    return next(k + 1 for k, v in enumerate(variance) if v <= least + max(GAIN, PART * least))
+    least = min(reached)
+    return next(k + 1 for k, v in enumerate(reached) if v <= least + max(GAIN, PART * least))
+
+
+def _turns(hair: Hair, axes: Axes, count: int) -> bool:
+    """Whether so many lobes lose more where they may not turn."""
+    angle = hair.angles(axes.offset)
+    mass = _cells(hair, hair.rows(3)[1:2], angle, axes).mass[0]
+    free, fixed = (first_row(mass, angle, count, turning).variance(mass) for turning in (True, False))
+    return fixed > free + GAIN
 
 
 def _cells(hair: Hair, theta_r: Array, angle: Array, axes: Axes) -> Cells:
@@ -164,6 +181,7 @@ def _fit_once(
     name: str,
     axes: Axes,
     count: int,
+    turning: bool,
     tolerance: float,
     random: np.random.Generator,
     report: Report,
@@ -171,7 +189,7 @@ def _fit_once(
     report("evaluating", 0.0)
     angle = hair.angles(axes.offset)
     data = _cells(hair, hair.rows(axes.theta_r), angle, axes)
-    rows = fit_rows(data, angle, count, hair.offsets, lambda share: report("fitting lobes", share))
+    rows = fit_rows(data, angle, count, turning, lambda share: report("fitting lobes", share))
     reach = np.array([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)])
     model = bake(data, rows, name, hair.mirrored, TABLE_PART * tolerance)
     report("measuring", 0.0)
@@ -215,8 +233,8 @@ def _expected(data: Cells, rows: dict[int, Row], j: int, before: int) -> Row:
     density = last.theta / np.diff(old)[:, None]
     theta = np.stack([np.interp(middles, (old[1:] + old[:-1]) / 2, one) for one in density.T], axis=1)
     theta = (theta + 1e-30) * np.diff(new)[:, None]
-    turn = last.turn if second is None else 2 * last.turn - second.turn
-    return replace(last, theta=theta / theta.sum(axis=0), turn=turn)
+    went = 0.0 if second is None else np.clip(last.turn - second.turn, -FARTHEST, FARTHEST)
+    return replace(last, theta=theta / theta.sum(axis=0), turn=last.turn + went)
 
 
 def _at_all(row: Row, mass: Array, some: Array, angle: Array, turning: bool) -> Row:
@@ -233,22 +251,31 @@ def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -
     lobes = []
     around = np.tile(np.linspace(0, TWO_PI, rows[0].phi.shape[1] + 1), (len(rows), 1))
     share = np.stack([row.share for row in rows]).transpose(2, 0, 1)
-    turn = np.stack([row.turn for row in rows]).transpose(2, 0, 1)
+    turn = wrap(np.stack([row.turn for row in rows]).transpose(2, 0, 1))
     for k in range(len(share)):
         lobe, importance = f"lobe{k}", share[k].mean(axis=1)
+        azimuths = np.stack([row.phi[k] for row in rows])
         theta = smooth.rows(
             data.theta_r, data.theta_edges, np.stack([row.theta[:, k] for row in rows]), False
         )
-        phi = smooth.rows(data.theta_r, around, np.stack([row.phi[k] for row in rows]), True)
         lobes.append(
             BakedLobe(
                 lobe,
                 tables.smallest(f"{lobe}_theta", name, theta, importance, loss),
-                tables.smallest(f"{lobe}_phi", name, phi, importance, loss),
+                None
+                if _uniform(azimuths, importance, loss)
+                else tables.smallest(
+                    f"{lobe}_phi", name, smooth.rows(data.theta_r, around, azimuths, True), importance, loss
+                ),
             )
         )
     mixture = Mixture(tuple(one.name for one in lobes), data.theta_r, data.offset, share, turn, mirrored)
     return BakedModel(name, tuple(lobes), mixture)
+
+
+def _uniform(azimuths: Array, importance: Array, loss: float) -> bool:
+    """Whether uniform draws lose no more for azimuths (J, m) than a table may."""
+    return bool((importance * variance(azimuths, np.full(azimuths.shape, 1.0), 1)).max() <= loss)
 
 
 def _losses(

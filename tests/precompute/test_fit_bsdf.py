@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from hairlut import cli, exr
+from hairlut.fit import hair, promise, refine
 
 EXAMPLE = "precompute/examples/chiang2016.py"
 BRIGHT = 1e-4
@@ -94,6 +95,22 @@ def test_a_near_field_hair_keeps_its_promise_between_nodes(tmp_path, capsys):
     assert variance == pytest.approx(told["relative_variance"], rel=0.25, abs=0.003)
     assert weight < 1.5 * told["largest_weight"]
     assert "warning" not in err
+
+
+def test_losses_are_measured_between_all_offsets(monkeypatch):
+    """Lobes of a like shape that cross do so between two offsets, and V is large there alone."""
+    seen = []
+
+    def losses(model, density, theta_r, offset, count, random):
+        seen.append(offset)
+        return promise.Losses(theta_r, offset, np.zeros_like(offset), offset, offset)
+
+    monkeypatch.setattr(promise, "losses", losses)
+    given = hair.of_density(lambda theta_r, theta_i, phi, offset: 1.1 + np.cos(phi + 2 * offset), True)
+    for count in (4, 11, 41):
+        refine._losses(given, None, refine.Axes(37, count, 32, 8), np.random.default_rng(0))
+        angle = given.angles(count)
+        assert np.unique(seen[-1]) == pytest.approx(np.sin((angle[1:] + angle[:-1]) / 2))
 
 
 def test_a_far_field_hair_takes_several_lobes_without_turns(tmp_path, capsys):

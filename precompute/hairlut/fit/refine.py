@@ -42,7 +42,7 @@ WEIGHT_PARTS = 5.0  # what a weight that is too large counts, or a viewer whose 
 LARGEST_STEP = 2.0
 VIEWERS, OFFSETS = 24, 8
 REPEATS = 4
-ROWS = 9  # on and between which losses are distinguished
+ROWS, GAPS = 9, 5  # of theta_r and, for each, of the offset, on and between which losses are distinguished
 
 
 @dataclass(frozen=True)
@@ -284,21 +284,23 @@ def _losses(
     """V and the largest weight on nodes, between rows, and between offsets."""
     theta_r, angle = hair.rows(axes.theta_r), hair.angles(axes.offset)
     rows = ((np.arange(ROWS) + 0.5) * ((axes.theta_r - 1) / ROWS) - 0.5).round().astype(int)
-    nodes = np.unique(np.linspace(0, max(axes.offset - 2, 0), 5).round().astype(int))
+    gaps = max(axes.offset - 1, 1)
+    each = min(GAPS, gaps)  # of a row; together the rows see all, since lobes that cross do so in one
+    gap = np.arange(ROWS * each).reshape(ROWS, each) % gaps
     at = {
-        "nodes": (theta_r[rows + 1], angle[nodes]),
-        "theta_r": ((theta_r[rows] + theta_r[rows + 1]) / 2, angle[nodes]),
+        "nodes": (theta_r[rows + 1], angle[gap]),
+        "theta_r": ((theta_r[rows] + theta_r[rows + 1]) / 2, angle[gap]),
     }
     models = {}
     if hair.offsets and hair.nodes is None:
-        at["offset"] = theta_r[rows + 1], (angle[nodes] + angle[nodes + 1]) / 2
+        at["offset"] = theta_r[rows + 1], (angle[gap] + angle[gap + 1]) / 2
     elif axes.offset >= 5:
-        at["offset"] = theta_r[rows + 1], angle[1:-1:2]
+        at["offset"] = theta_r[rows + 1], np.tile(angle[1:-1:2], (ROWS, 1))
         models["offset"] = _without(model, np.arange(1, axes.offset - 1, 2))
     found = {}
     for where, (viewers, angles) in at.items():
-        offset = np.tile(np.sin(angles), (len(viewers), 1))
-        loss = promise.losses(models.get(where, model), hair.density, viewers, offset, 2 * axes.phi, random)
+        model_there = models.get(where, model)
+        loss = promise.losses(model_there, hair.density, viewers, np.sin(angles), 2 * axes.phi, random)
         found[where] = float(loss.variance.mean()), float(loss.weight.max())
     return found
 

@@ -45,6 +45,10 @@ class Times:
         first = ["fitted", "brown"]
         return sorted(names, key=lambda name: (first.index(name) if name in first else len(first), name))
 
+    def repetitions(self) -> int:
+        """How often each benchmark ran."""
+        return max(map(len, self.repeats.values()))
+
     def interference(self) -> float:
         """By how much the median of a benchmark's repetitions exceeds their least, in the median over all."""
         return statistics.median(statistics.median(all) / min(all) for all in self.repeats.values()) - 1

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from bench import summary
-from bench.timing import REPETITIONS, Times
+from bench.timing import Times
 
 from hairlut import exr
 from hairlut.lobes import FITTED
@@ -92,7 +92,7 @@ CALCULATION = """
 
 
 def page(times: Times) -> str:
-    text = TEXT.format(side=SIDE, repetitions=REPETITIONS, place=times.place)
+    text = TEXT.format(side=SIDE, repetitions=times.repetitions(), place=times.place)
     parts = [text, "\n## Lobes\n\n", axis(times, "lobes", LOBES), "\n## Offsets\n\n"]
     parts += [f"Four lobes, {ROWS} nodes of theta_r.\n\n", axis(times, "offsets", OFFSETS)]
     parts += ["\n## Columns\n\nOne lobe.\n\n", axis(times, "columns", SIDES)]

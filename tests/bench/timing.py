@@ -18,7 +18,7 @@ ARRAYS = (
     "arrays128",
     "arrays256",
     "arrays512",
-)  # whichever vectors the compiler was told to prefer
+)  # whichever vectors the compiler preferred
 
 
 @dataclass(frozen=True)

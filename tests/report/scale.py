@@ -73,8 +73,8 @@ grows. Every lobe has two tables of its own, {side}x{side} where they do not var
 CALCULATION = """
 ## By calculation
 
-- A sample of K lobes draws from one and asks the density of the K - 1 others; the density of a direction
-  asks all K. A vertex is one draw and 2 K - 1 densities, and 2 evaluations of the mixture (K shares and
+- A sample of K lobes draws from one and evaluates the density of the K - 1 others; the density of a
+  direction evaluates all K. A vertex is one draw and 2 K - 1 densities, and 2 evaluations of the mixture (K shares and
   turns, bilinear). Hence a line in K:
 {lines}
 - More offsets, or more rows of the mixture, add memory, 16 bytes a lobe and node, and steps to the search

@@ -224,7 +224,8 @@ SIZES = """## Time against error
 
 One table, theta_i of the direct lobe of `fitted`, with a uniform azimuth: a direction and both
 densities. The rivals' lines are their samples of a lobe of that kind (`sample_multiple`), V = 0: that a
-table can do without a closed form is its reason to be, and this asks what it costs where there is one.
+table can do without a closed form is its reason to be; the figure shows what it costs where there is
+one.
 
 """
 

@@ -74,8 +74,8 @@ CALCULATION = """
 ## By calculation
 
 - A sample of K lobes draws from one and evaluates the density of the K - 1 others; the density of a
-  direction evaluates all K. A vertex is one draw and 2 K - 1 densities, and 2 evaluations of the mixture (K shares and
-  turns, bilinear). Hence a line in K:
+  direction evaluates all K. A vertex is one draw and 2 K - 1 densities, and 2 evaluations of the mixture
+  (K shares and turns, bilinear). Hence a line in K:
 {lines}
 - More offsets, or more rows of the mixture, add memory, 16 bytes a lobe and node, and steps to the search
   of a node, which grow with their logarithm one at a time.

@@ -217,12 +217,11 @@ def test_json_is_all_that_is_printed(command, place):
     assert isinstance(json.loads(out), list)
 
 
-@pytest.mark.parametrize("model", ["grid_whole_masses.npz", "grid_whole_gaussians.toml"])
-def test_what_a_fit_wrote_is_a_model(model, place):
+def test_what_a_fit_wrote_is_a_model(place):
     assert run(place, "fit inputs/grid_whole.csv --out models")[0] == cli.OK
-    code, out, err = run(place, f"bake --model models/{model} --size 16x8 --out baked")
+    code, out, err = run(place, "verify models/grid_whole")
     assert (code, err) == (cli.OK, "")
-    assert "direct, multiple" in out
+    assert out.count("ok ") == len(list((place / "models" / "grid_whole").iterdir())) == 2
 
 
 def test_a_bsdf_says_as_json_what_it_made(place):

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import __version__
-from .errors import HairlutError
+from . import __version__, config
 from .exr import read_model
 from .files import write_whole
 from .lobes import MODELS
@@ -21,7 +20,6 @@ from .stream import stream
 from .table import Table
 
 VIEWER = Path(__file__).with_name("viewer")
-SHADER = Path(__file__).parents[2] / "runtime" / "shaders" / "hairlut.glsl"
 PROGRAMS = ("model", "draw", "evaluate", "shares", "screen", "sphere", "point", "dot", "nothing")
 SIZES = (16, 32)
 
@@ -33,16 +31,12 @@ def write_explorer(directories: Sequence[Path], out: Path, sizes: Sequence[int] 
 
 def page(directories: Sequence[Path], sizes: Sequence[int] = SIZES) -> str:
     """The page as text."""
-    if not SHADER.is_file():
-        raise HairlutError(
-            f"{SHADER}: no such file: run hairlut view from a checkout, which has runtime/shaders"
-        )
     models = {}
     for directory in directories:
         shipped = read_model(directory)
         models[shipped.name] = model_data(shipped, sizes)
     programs = {f"{name}.glsl": (VIEWER / f"{name}.glsl").read_text() for name in PROGRAMS}
-    programs["hairlut.glsl"] = SHADER.read_text()
+    programs["hairlut.glsl"] = (config.data("shaders") / "hairlut.glsl").read_text()
     parts = {
         "/*@style*/": (VIEWER / "style.css").read_text(),
         "/*@data*/": json.dumps({"version": __version__, "models": models}, separators=(",", ":")),

@@ -19,7 +19,7 @@ import numpy as np
 import hairlut
 from hairlut.exr import write_model
 from hairlut.files import write_whole
-from hairlut.fit import hair, refine, says
+from hairlut.fit import hair, refine, summary
 from report import fits_page
 from report.hairs import Subject, far_field, near_field
 from report.places import PAGES
@@ -38,12 +38,12 @@ def measured(subject: Subject) -> dict:
     given = hair.of_density(subject.density, subject.offsets)
     found = refine.fit(given, "hair", TOLERANCE, None, BUDGET, lambda stage, share: None)
     with tempfile.TemporaryDirectory() as folder:
-        paths = write_model(Path(folder), says.with_errors(found))
+        paths = write_model(Path(folder), summary.with_errors(found))
         seconds = process_time() - start
         size = sum(path.stat().st_size for path in paths)
         model = hairlut.load(folder)
         kept = quadrature(subject, lambda *at: model.pdf(at[0], 0.0, at[1], at[2], offset=at[3]))
-    told = says.promise(found)
+    told = summary.promise(found)
     row = {
         "promise": told.relative_variance,
         "promise_low": told.low,

@@ -98,9 +98,9 @@ def run(args: argparse.Namespace) -> int:
         def report(stage: str, share: float) -> None:
             progress.update(task, description=stage, completed=share)
 
-        model, text, figures, doubts = _fitted(args, name, report)
-    for doubt in doubts:
-        print(f"hairlut: {args.data}: warning: {doubt}", file=sys.stderr)
+        model, text, figures, warned = _fitted(args, name, report)
+    for warning in warned:
+        print(f"hairlut: {args.data}: warning: {warning}", file=sys.stderr)
     from ..exr import write_model
 
     seconds = perf_counter() - start
@@ -117,7 +117,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
     """(model, text for a person, data for a script, warnings)."""
-    from ..fit import bsdf, hair, says
+    from ..fit import bsdf, hair, summary
     from ..fit.read import Draws, read
 
     if args.data.suffix == ".py":
@@ -130,15 +130,15 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
             raise HairlutError("--plot: draws have no density to plot: leave it out")
         report("cross-validating", 0.0)
         found = drawn.fit(data, name, args.lobes)
-        text, figures = says.drawn_text(args.data, data, found), says.drawn_data(data, found)
-        return says.with_error(found), text, figures, []
+        text, figures = summary.drawn_text(args.data, data, found), summary.drawn_data(data, found)
+        return summary.with_error(found), text, figures, []
     from ..fit import grid
 
     return _of_hair(grid.of_grid(data, args.measure == "solid-angle"), data, args, name, report)
 
 
 def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: Report) -> tuple:
-    from ..fit import doubts, refine, says
+    from ..fit import refine, summary, warnings
 
     try:
         found = refine.fit(given, name, args.tolerance, args.lobes, args.budget, report)
@@ -148,9 +148,9 @@ def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: R
         raise HairlutError(f"{args.data}: {error}") from None
     if args.plot:
         _plot(given, found, args.plot, name)
-    figures = {"data": str(what), **says.data(found, args.tolerance)}
-    text = f"{args.data}: {what}\n{says.text(found, args.tolerance)}"
-    return says.with_errors(found), text, figures, doubts.doubts(given, found.promised)
+    figures = {"data": str(what), **summary.data(found, args.tolerance)}
+    text = f"{args.data}: {what}\n{summary.text(found, args.tolerance)}"
+    return summary.with_errors(found), text, figures, warnings.warnings(given, found.promised)
 
 
 def _plot(given, found, path: Path, name: str) -> None:

@@ -3,6 +3,6 @@
 
 bsdf runs a user's function, read takes grids and draws from files, and hair, grid and draws make densities
 or cells of them. factor, highlights, turning and lobesfit find lobes, smooth and tables bake them, promise
-measures the textures, and refine does all that again with finer cells until it is good enough. says and plot
-tell.
+measures the textures, and refine does all that again with finer cells until it is good enough. summary,
+warnings and plot report.
 """

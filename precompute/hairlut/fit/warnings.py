@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Doubts about what a file means by f: a cosine too many or too few costs samples, but nothing else shows it.
+"""Warnings about what a file likely means by f: a cosine too many or too few costs samples, and nothing else
+shows it.
 
 A fibre scatters at most the light that it receives, and its f is the same when light and viewer change
 places. Where f is not so, but f over a power of cos(theta_i) is, the file probably has f in another measure.
@@ -25,7 +26,7 @@ MEANING = {
 }
 
 
-def doubts(hair: Hair, loss: Losses) -> list[str]:
+def warnings(hair: Hair, loss: Losses) -> list[str]:
     """Warnings about a hair, of whose light `loss` has the sums. A grid may be in any unit."""
     energy = _energy(loss) if hair.nodes is None else ""
     return [text for text in (energy, _reciprocity(hair)) if text]

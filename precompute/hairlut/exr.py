@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import mixturefile, slopes
+from . import axesfile, mixturefile, slopes
+from .axes import check_ranges
 from .errors import HairlutError
 from .exrfile import (
     MAX_INCLINATION,
@@ -87,7 +88,8 @@ def read_model(directory: Path) -> BakedModel:
     for each, _ in read_before.values():
         _check_member(directory / f"{each.name}.exr", each, model, mixed)
     mixture = mixed.mixture if mixed else constant(tuple(OLD_LOBES))
-    return BakedModel(model, lobes, mixture, errors | ({"mixture": mixed.errors} if mixed else {}))
+    errors |= {"mixture": mixed.errors} if mixed else {}
+    return BakedModel(model, lobes, mixture, errors, mixed.parameters if mixed else ())
 
 
 def _check_member(path: Path, table: Table, model: str, mixed: mixturefile.MixtureFile | None) -> None:
@@ -102,6 +104,10 @@ def _check_member(path: Path, table: Table, model: str, mixed: mixturefile.Mixtu
             f"{path}: the texels have the digest {table.digest!r}, but mixture.exr names "
             f"{mixed.digests[table.name]!r}: the files are of different bakes; bake them again together"
         )
+    try:
+        check_ranges(table.axes, mixed.parameters if mixed else ())
+    except HairlutError as error:
+        raise HairlutError(f"{path}: {error}: bake the model's files again together") from error
 
 
 def write(path: Path, table: Table, errors: Mapping[str, float] | None = None) -> None:
@@ -123,6 +129,7 @@ def attributes(table: Table) -> Attributes:
         "hairlut.warp": str(table.warp),
         "hairlut.cell": CELL,
         "hairlut.knots": numbers_text(table.warp.u(table.width)),
+        **axesfile.of_table(table.axes),
         "hairlut.parameters": table.parameters,
         "hairlut.log_mass": numbers_text(np.round(table.log_mass, 12) + 0.0),  # as on every machine
     }
@@ -144,7 +151,9 @@ def _read(path: Path, of_format: int | None = None) -> tuple[Table, dict[str, fl
 
     header, channels = read_image(path, channels_of)
     texels = channels[0]
-    height, width = texels.shape
+    rows, width = texels.shape
+    axes = axesfile.read_table_axes(header)
+    height = axesfile.split_rows(header, rows, axes)
     try:
         check_size(width, height)
     except HairlutError as error:
@@ -166,7 +175,8 @@ def _read(path: Path, of_format: int | None = None) -> tuple[Table, dict[str, fl
         warp=warp,
         texels=texels,
         slopes=np.ones_like(texels),
-        log_mass=header.information("log_mass", height),
+        log_mass=header.information("log_mass", rows),
+        axes=axes,
     )
     if header.format > 1:
         header.check_digest(channels)

@@ -32,7 +32,7 @@ MAX_INCLINATION = 1.571  # rad, a little more than pi/2: beyond it an inclinatio
 MODEL_NAME = r"[ -~]{1,63}"
 REBAKE = "bake it again with 'hairlut bake'"
 MAGIC = b"\x76\x2f\x31\x01"
-MAX_SIDE = 4096
+MAX_WIDTH, MAX_ROWS, MAX_TEXELS = 4096, 65536, 2**24
 DEEP = 0x800  # a flag of the version field
 MAX_NAME = 256  # bytes of a name in a header, with its zero
 COMPRESSIONS = ("NO_COMPRESSION", "RLE_COMPRESSION", "ZIPS_COMPRESSION", "ZIP_COMPRESSION")
@@ -263,9 +263,11 @@ def _check_image(header: Header, expected: Sequence[str]) -> None:
             raise HairlutError(
                 f"{path}: {name} is {window}, expected it to start at 0 0 and span the image: {REBAKE}"
             )
-    if max(right, bottom) >= MAX_SIDE:
+    width, rows = right + 1, bottom + 1
+    if width > MAX_WIDTH or rows > MAX_ROWS or width * rows > MAX_TEXELS:
         raise HairlutError(
-            f"{path}: size is {right + 1}x{bottom + 1}, expected sides of at most {MAX_SIDE}: {REBAKE}"
+            f"{path}: size is {width}x{rows}, expected at most {MAX_WIDTH}x{MAX_ROWS}, and {MAX_TEXELS} "
+            f"texels in all: {REBAKE}"
         )
 
 

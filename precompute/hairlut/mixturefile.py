@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from . import axesfile
+from .axes import MAX_PARAMETERS, Parameter
 from .errors import HairlutError
 from .exrfile import (
     MAX_INCLINATION,
@@ -35,8 +37,9 @@ LOBE_FORM = "'NAME_theta DIGEST' or 'NAME_theta DIGEST NAME_phi DIGEST', with 8 
 class MixtureFile:
     """What mixture.exr says.
 
-    tables    names of each lobe's tables: theta, and phi or None
-    digests   digest of each table, as Table.digest
+    tables      names of each lobe's tables: theta, and phi or None
+    digests     digest of each table, as Table.digest
+    parameters  those of the whole model
     """
 
     model: str
@@ -44,19 +47,22 @@ class MixtureFile:
     tables: dict[str, tuple[str, str | None]]
     digests: dict[str, str]
     errors: dict[str, float]
+    parameters: tuple[Parameter, ...]
 
 
 def write(path: Path, model: BakedModel) -> None:
-    """Writes mixture.exr, a row for each theta_r and a column for each offset."""
+    """Writes mixture.exr: for each node of the parameters a row for each theta_r, with a column an offset."""
     mixture = model.mixture
     channels = {}
     for k, name in enumerate(mixture.lobes):
-        channels |= {f"{name}.share": mixture.share[k], f"{name}.turn": mixture.turn[k]}
+        share, turn = (values[k].reshape(-1, len(mixture.offset)) for values in (mixture.share, mixture.turn))
+        channels |= {f"{name}.share": share, f"{name}.turn": turn}
     attributes: Attributes = {
         **common_attributes(model.name, "mixture"),
         "hairlut.lobes": " ".join(mixture.lobes),
         **{f"hairlut.lobe.{lobe.name}": _tables_text(lobe) for lobe in model.lobes},
-        "hairlut.axes": AXES,
+        "hairlut.axes": " ".join([*(parameter.name for parameter in model.parameters), AXES]),
+        **axesfile.of_mixture(model.parameters, mixture.axes),
         "hairlut.axis.theta_r": numbers_text(mixture.theta_r),
         "hairlut.axis.offset": numbers_text(mixture.offset),
         "hairlut.mirrored": str(int(mixture.mirrored)),
@@ -75,7 +81,8 @@ def read(path: Path) -> MixtureFile:
         raise header.failure("format", f"is {header.format}, expected 2")
     header.one_of("table", ("mixture",))
     header.one_of("unit", (UNIT,))
-    header.one_of("axes", (AXES,), "this reader knows the axes theta_r and offset")
+    names = axesfile.read_names(header, AXES, MAX_PARAMETERS)
+    parameters, axes = axesfile.read_parameters(header, names)
     lobes = _lobes(header)
     mirrored = header.one_of("mirrored", ("0", "1")) == "1"
     rows, columns = channels[0].shape
@@ -83,18 +90,18 @@ def read(path: Path) -> MixtureFile:
         raise HairlutError(
             f"{path}: size is {columns}x{rows}, expected at most {MAX_GRID} nodes in all: {REBAKE}"
         )
-    axes = [
-        _axis(header, "axis.theta_r", rows, -MAX_INCLINATION, MAX_INCLINATION),
-        _axis(header, "axis.offset", columns, 0.0 if mirrored else -1.0, 1.0),
-    ]
+    height = axesfile.split_rows(header, rows, axes)
+    theta_r = _axis(header, "axis.theta_r", height, -MAX_INCLINATION, MAX_INCLINATION)
+    offset = _axis(header, "axis.offset", columns, 0.0 if mirrored else -1.0, 1.0)
     header.check_digest(channels)
-    share, turn = (np.stack(channels[first::2]).astype(float) for first in (0, 1))
+    shape = len(lobes), *(len(axis.nodes) for axis in axes), height, columns
+    share, turn = (np.stack(channels[first::2]).astype(float).reshape(shape) for first in (0, 1))
     try:
-        mixture = Mixture(lobes, *axes, share, turn, mirrored)
+        mixture = Mixture(lobes, theta_r, offset, share, turn, mirrored, axes)
     except HairlutError as error:
         raise HairlutError(f"{path}: {error}: {REBAKE}") from error
     tables, digests = _tables(header, lobes)
-    return MixtureFile(header.model(), mixture, tables, digests, header.errors())
+    return MixtureFile(header.model(), mixture, tables, digests, header.errors(), parameters)
 
 
 def _lobes(header: Header) -> tuple[str, ...]:

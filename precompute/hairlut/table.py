@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A table: a lobe's inverse CDF at the knots of a warp, for a row of viewer inclinations."""
+"""A table: a lobe's inverse CDF at the knots of a warp, for a row of viewer inclinations, and that for each
+node of the parameters on which it depends."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .axes import Axis, check_axes, corners, node_count
 from .digest import digest
 from .errors import HairlutError
 from .exact import Exact, exact_at
@@ -20,10 +23,12 @@ MIN_WIDTH, MIN_HEIGHT, MAX_SIDE = 4, 2, 4096
 class Table:
     """A table and all that its file's header says of it.
 
-    texels      (height, width) float32, rad, strictly increasing along each row
-    slopes      (height, width) float32, dx/du at each texel, rad per unit of u, positive
-    log_mass    (height,) logarithm of the lobe's mass inside its domain, by which each row was normalised
+    texels      (rows, width) float32, rad, strictly increasing along each row; a row for each theta_r, and
+                that for each node of the axes, the first axis slowest: rows = nodes * height
+    slopes      (rows, width) float32, dx/du at each texel, rad per unit of u, positive
+    log_mass    (rows,) logarithm of the lobe's mass inside its domain, by which each row was normalised
     parameters  Lobe.formula; the other fields as in Lobe
+    axes        nodes of each of the hair's parameters on which the table depends
     """
 
     model: str
@@ -37,6 +42,15 @@ class Table:
     texels: Array
     slopes: Array
     log_mass: Array
+    axes: tuple[Axis, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_axes(self.axes)
+        if self.axes and len(self.texels) % node_count(self.axes):
+            raise HairlutError(
+                f"{self.model}/{self.name}: has {len(self.texels)} rows, expected a multiple of the "
+                f"{node_count(self.axes)} nodes of {', '.join(axis.name for axis in self.axes)}"
+            )
 
     @property
     def width(self) -> int:
@@ -44,7 +58,8 @@ class Table:
 
     @property
     def height(self) -> int:
-        return self.texels.shape[0]
+        """Rows of theta_r of one node."""
+        return self.texels.shape[0] // node_count(self.axes)
 
     @property
     def nbytes(self) -> int:
@@ -58,8 +73,21 @@ class Table:
 
     @property
     def theta_r(self) -> Array:
-        """(height,) viewer inclination of each row."""
+        """(height,) viewer inclination of each row of one node."""
         return row_angles(self.theta_r_range, self.height)
+
+    def at(self, parameters: Mapping[str, float]) -> "Table":
+        """The table at fixed parameters, without axes: the blend of its texels, in double precision."""
+        if not self.axes:
+            return self
+        node, part = corners(self.axes, parameters)
+
+        def blend(rows: Array) -> Array:
+            by_node = np.asarray(rows, float).reshape(-1, self.height, *rows.shape[1:])
+            return np.tensordot(part, by_node[node], 1)
+
+        texels, slopes, log_mass = (blend(rows) for rows in (self.texels, self.slopes, self.log_mass))
+        return replace(self, texels=texels, slopes=slopes, log_mass=log_mass, axes=())
 
 
 def row_angles(theta_r_range: tuple[float, float], height: int) -> Array:

@@ -11,6 +11,7 @@ import OpenEXR
 import pytest
 
 from hairlut import exr, exrfile, interpolant, slopes
+from precompute.parametric import model as model_over_parameters
 
 
 class Table:
@@ -175,6 +176,54 @@ class Model:
         return density
 
 
+def corners(axes, given):
+    """The page's corners: (block, part) of each. axes: nodes by parameter."""
+    found = [(0, 1.0)]
+    for name, nodes in axes.items():
+        value = min(max(given[name], nodes[0]), nodes[-1])
+        k = max(n for n in range(len(nodes) - 1) if nodes[n] <= value)
+        w = (value - nodes[k]) / (nodes[k + 1] - nodes[k])
+        found = [(b * len(nodes) + k + n, p * (w if n else 1 - w)) for n in (0, 1) for b, p in found]
+    return found
+
+
+def axes_of(attributes):
+    """(nodes of the parameters on which a file depends, nodes of the other axes), by name"""
+    names = attributes.get("hairlut.axes", "theta_r").split(" ")
+    nodes = {
+        name: [float(w) for w in attributes[f"hairlut.axis.{name}"].split(" ")]
+        for name in names
+        if f"hairlut.axis.{name}" in attributes
+    }
+    own = {name: nodes.pop(name) for name in ("theta_r", "offset") if name in nodes}
+    return {name: values for name, values in nodes.items() if len(values) > 1}, own
+
+
+def table_at(rows, slope, attributes, given):
+    """The page's table at given parameters. rows, slope: (rows, W)"""
+    axes, _ = axes_of(attributes)
+    nodes = math.prod(len(values) for values in axes.values())
+    fixed = []
+    for texels in (rows, slope):
+        blocks = np.reshape(texels, (nodes, -1, len(texels[0])))
+        fixed.append(sum(part * blocks[block] for block, part in corners(axes, given)).tolist())
+    return Table(*fixed, attributes)
+
+
+def mixture_of(share, turn, attributes, given):
+    """The page's mixture at given parameters. share, turn: (lobes, rows, offsets)"""
+    lobes = attributes["hairlut.lobes"].split(" ")
+    axes, own = axes_of(attributes)
+    shape = len(lobes), -1, len(own["theta_r"]), len(own["offset"])
+    share, turn, at = np.reshape(share, shape), np.reshape(turn, shape), corners(axes, given)
+    share = share / share.sum(axis=0)
+    a = turn[:, at[0][0]]
+    share = sum(part * share[:, block] for block, part in at)
+    turn = a + sum(part * wrap(turn[:, block] - a) for block, part in at)
+    mirrored = attributes["hairlut.mirrored"] == "1"
+    return Mixture(lobes, own["theta_r"], own["offset"], mirrored, share.tolist(), turn.tolist())
+
+
 # ---- the page
 
 
@@ -310,6 +359,68 @@ def test_worked_example_of_a_hair(page, mixture, table):
         assert density == pytest.approx(values["density"][n], rel=1e-7)
 
 
+PARAMETERS = "## Worked example: parameters"
+
+
+def given_at(attributes, values, n):
+    """The parameters' values in column n, clamped."""
+    found = {}
+    for name in attributes["hairlut.axes"].split(" ")[:-2]:
+        least, most, _ = map(float, attributes[f"hairlut.parameter.{name}"].split(" "))
+        found[name] = min(max(values[name][n], least), most)
+    return found
+
+
+def test_worked_example_of_parameters(page):
+    of_mixture, of_table, values = blocks(page, PARAMETERS)
+    (attributes, groups), (of_theta, theta), values = parsed(of_mixture), parsed(of_table), columns(values)
+    of_phi, phi = parsed(blocks(page, MIXTURE)[2])
+    of_phi["hairlut.theta_r_range"] = of_theta["hairlut.theta_r_range"]
+    lobes = attributes["hairlut.lobes"].split(" ")
+    share, turn = ([groups[f"{lobe}.{what}"] for lobe in lobes] for what in ("share", "turn"))
+    assert len(values["beta_m"]) == 3
+    for n in range(3):
+        given = given_at(attributes, values, n)
+        ((_, _), (_, w)), absorption = (
+            corners(axes_of(of_theta)[0], given),
+            corners(axes_of(attributes)[0], given),
+        )
+        mixture = mixture_of(share, turn, attributes, given)
+        tables = (
+            table_at(theta["Y"], theta["dxdu"], of_theta, given),
+            Table(phi["Y"] * 2, phi["dxdu"] * 2, of_phi),
+            "difference",
+        )
+        model = Model(mixture, dict.fromkeys(lobes, tables))
+        arguments = [values[x][n] for x in ("theta_r", "phi_r", "offset", "u_lobe", "u_theta", "u_phi")]
+        lobe, theta_i, phi_i = model.sample(*arguments)
+        at = mixture.at(*(values[x][n] for x in ("theta_r", "offset")))
+        found = {"w(beta_m)": w, "k(absorption)": absorption[0][0], "w(absorption)": absorption[1][1]}
+        found |= {f"{x}.share": at["share"][k] for k, x in enumerate(lobes)}
+        found |= {f"{x}.turn": at["turn"][k] for k, x in enumerate(lobes)}
+        cell = tables[0].sample(values["theta_r"][n], values["u_theta"][n])
+        found |= {x: cell[x] for x in ("x0", "x1", "d0", "d1")} | {"lobe": lobe}
+        found |= {"theta_i": theta_i, "phi_i": phi_i, "density": model.pdf(*arguments[:3], theta_i, phi_i)}
+        for name, value in found.items():
+            assert value == pytest.approx(values[name][n], rel=1e-7, abs=1e-12), name
+
+
+def test_digests_of_the_parameters_example(page):
+    of_mixture, of_table, _ = blocks(page, PARAMETERS)
+    (attributes, groups), (of_theta, theta) = parsed(of_mixture), parsed(of_table)
+    _, phi = parsed(blocks(page, MIXTURE)[2])
+
+    def digest(*channels):
+        return f"{zlib.crc32(np.stack(channels, axis=-1).astype('<f4').tobytes()):08x}"
+
+    names = [f"{lobe}.{what}" for lobe in ("r", "tt") for what in ("share", "turn")]
+    first, second = digest(theta["Y"], theta["dxdu"]), digest(phi["Y"] * 2, phi["dxdu"] * 2)
+    assert of_theta["hairlut.digest"] == f"crc32 {first}"
+    assert attributes["hairlut.digest"] == f"crc32 {digest(*(groups[name] for name in names))}"
+    for lobe in ("r", "tt"):
+        assert attributes[f"hairlut.lobe.{lobe}"] == f"r_theta {first} r_phi {second}"
+
+
 # ---- the files
 
 
@@ -336,27 +447,38 @@ def test_the_page_reads_every_shipped_table(shipped):
     np.testing.assert_allclose([s["u"] for s in back], u[1:], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["printed", "brown"])
-def test_the_page_reads_a_whole_model(luts, name):
-    header, channels = attributes_of(luts / name / "mixture.exr")
+@pytest.fixture(scope="module")
+def parametric(tmp_path_factory):
+    """The directory of a model over parameters."""
+    directory = tmp_path_factory.mktemp("files") / "parametric"
+    exr.write_model(directory, model_over_parameters())
+    return directory
+
+
+def model_of(directory, given):
+    """The page's model of files, at given parameters."""
+    header, channels = attributes_of(directory / "mixture.exr")
     lobes = header["hairlut.lobes"].split(" ")
-    axes = ([float(w) for w in header[f"hairlut.axis.{axis}"].split(" ")] for axis in ("theta_r", "offset"))
     share, turn = ([channels[f"{lobe}.{what}"] for lobe in lobes] for what in ("share", "turn"))
     tables = {}
     for lobe in lobes:
         words = header[f"hairlut.lobe.{lobe}"].split(" ")
         parts = []
         for table, digest in zip(words[::2], words[1::2], strict=True):
-            attributes, texels = attributes_of(luts / name / f"{table}.exr")
+            attributes, texels = attributes_of(directory / f"{table}.exr")
             assert attributes["hairlut.digest"] == f"crc32 {digest}"
-            parts.append((Table(texels["Y"], texels["dxdu"], attributes), attributes["hairlut.azimuth"]))
+            table = table_at(texels["Y"], texels["dxdu"], attributes, given)
+            parts.append((table, attributes["hairlut.azimuth"]))
         tables[lobe] = (parts[0][0], *(parts[1] if len(parts) > 1 else (None, "none")))
-    reader = Model(Mixture(lobes, *axes, header["hairlut.mirrored"] == "1", share, turn), tables)
-    model = exr.read_model(luts / name)
+    return Model(mixture_of(share, turn, header, given), tables)
+
+
+def agree(reader, model, given):
+    """The page's reading of a model and ours, at 60 random places."""
     rng = np.random.default_rng(6)
     u = rng.uniform(size=(60, 3))
     theta_r, phi_r, offset = rng.uniform(-1.5, 1.5, 60), rng.uniform(-3, 3, 60), rng.uniform(-1, 1, 60)
-    theta_i, phi_i, density = model.sample(theta_r, phi_r, u, offset)
+    theta_i, phi_i, density = model.sample(theta_r, phi_r, u, offset, given)
     for n in range(60):
         _, theta, phi = reader.sample(theta_r[n], phi_r[n], offset[n], *u[n])
         assert theta == pytest.approx(theta_i[n], abs=1e-12)
@@ -365,16 +487,35 @@ def test_the_page_reads_a_whole_model(luts, name):
         assert pdf == pytest.approx(density[n], rel=1e-7)
 
 
+@pytest.mark.parametrize("name", ["printed", "brown"])
+def test_the_page_reads_a_whole_model(luts, name):
+    agree(model_of(luts / name, {}), exr.read_model(luts / name), {})
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"beta_m": 0.2, "absorption": 0.9, "tilt": 3.5},
+        {"beta_m": 0.25, "absorption": 0.0, "tilt": 4.0},
+        {"beta_m": 0.7, "absorption": 4.0, "tilt": -1.0},
+    ],
+)
+def test_the_page_reads_a_model_at_given_parameters(parametric, given):
+    agree(model_of(parametric, given), exr.read_model(parametric), given)
+
+
 def explained(page):
     return set(re.findall(r"^\| `([\w.<>]+)` \| (?:string|int) \|", page, re.MULTILINE))
 
 
-def test_every_attribute_is_explained(shipped, luts, page):
+def test_every_attribute_is_explained(shipped, luts, page, parametric):
     names = set()
-    for path in (shipped[1], luts / "fitted" / "mixture.exr", luts / "brown" / "mixture.exr"):
+    of_parameters = parametric / "mixture.exr", parametric / "r_theta.exr"
+    for path in (shipped[1], luts / "fitted" / "mixture.exr", luts / "brown" / "mixture.exr", *of_parameters):
         header, _ = attributes_of(path)
         names |= {n for n in header if n.startswith(("hairlut.", "colorInteropID"))}
-    general = {re.sub(r"^hairlut\.lobe\..*", "hairlut.lobe.<name>", name) for name in names}
+    of_a_name = r"^hairlut\.(lobe|parameter|axis)\.(?!(theta_r|offset)$).*"
+    general = {re.sub(of_a_name, r"hairlut.\1.<name>", name) for name in names}
     assert {n for n in general if not n.startswith("hairlut.error.")} <= explained(page)
     assert {n for n in explained(page) if not n.startswith("hairlut.error.")} == {
         n for n in general if not n.startswith("hairlut.error.")

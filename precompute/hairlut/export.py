@@ -2,71 +2,129 @@
 """Models and tables for engines that do not read OpenEXR.
 
 Target "c" is a C source against the public header (csource.py); "raw" and "npz" are plain arrays (arrays.py),
-of which "raw" also writes a model as the stream that the shaders read.
+of which "raw" also writes a model as the stream that the shaders read. "exr" writes a model's files again: of
+use where it depends on parameters of the hair and is wanted at fixed ones. Targets that do not carry
+parameters write a model at fixed ones only.
 There is no KTX2 or DDS: the one maintained writer of float KTX2 for Python, pyktx, needs the native libktx,
 which neither pip nor Debian installs; for DDS of floats there is none. A raw file is what those containers
 have behind their header.
 """
 
-from collections.abc import Callable, Sequence
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from . import arrays, csource, exr
 from .errors import HairlutError
 from .files import write_whole
+from .fixed import fixed
+from .model import BakedModel
 from .table import Table
 
+Errors = Mapping[str, float]
+NO_VALUES: Mapping[str, float] = {}
 
-def export(paths: Sequence[Path], target: str, out: Path) -> Path:
+
+@dataclass(frozen=True)
+class Source:
+    """What a path names: tables, with their measured errors, and the model, where it is a directory."""
+
+    path: Path
+    tables: Sequence[tuple[Table, Errors]]
+    model: BakedModel | None
+
+
+def export(paths: Sequence[Path], target: str, out: Path, at: Mapping[str, float] = NO_VALUES) -> Path:
     """Writes the tables at paths to out in the form of target, one of TARGETS; returns out.
 
-    paths: directories of a model, or single files, which "c" does not take. out: the file for "c", else the
-    folder that <model>/ goes to.
+    paths: directories of a model, or single files, which "c" and "exr" do not take. out: the file for "c",
+    else the folder that <model>/ goes to. at: parameters of the hair to fix, at these values and at standard
+    ones for those that it does not name; empty to fix none.
     """
     if target not in TARGETS:
         raise HairlutError(f"--to {target}: expected one of {', '.join(TARGETS)}")
-    return TARGETS[target]([Path(path) for path in paths], Path(out))
+    sources = [_source(Path(path), at, target in SINGLE_TABLES) for path in paths]
+    if target not in CARRY_PARAMETERS:
+        for source in sources:
+            _refuse_parameters(source, target)
+    return TARGETS[target](sources, Path(out))
 
 
-def export_c(directories: Sequence[Path], out: Path) -> Path:
+def _source(path: Path, at: Mapping[str, float], may_be_a_table: bool) -> Source:
+    if may_be_a_table and not path.is_dir():
+        if at:
+            raise HairlutError(
+                f"{path}: --at: expected a directory, as one table does not know the parameters"
+            )
+        return Source(path, [exr.read(path)], None)
+    model = fixed(path, exr.read_model(path), at) if at else exr.read_model(path)
+    return Source(path, [(table, model.errors.get(table.name, {})) for table in model.tables], model)
+
+
+def _refuse_parameters(source: Source, target: str) -> None:
+    if source.model and source.model.parameters:
+        first = source.model.parameters[0]
+        found = ", ".join(parameter.name for parameter in source.model.parameters)
+        remedy = f"fix them, as with --at {first.name}={first.standard:g}"
+    elif source.tables[0][0].axes:
+        found = ", ".join(axis.name for axis in source.tables[0][0].axes)
+        remedy = "name its directory, and fix them with --at NAME=VALUE"
+    else:
+        return
+    raise HairlutError(f"{source.path}: depends on {found}, which --to {target} does not carry: {remedy}")
+
+
+def export_c(sources: Sequence[Source], out: Path) -> Path:
     """One C source that defines a hairlut_model_desc for each directory."""
-    text = csource.source([exr.read_model(directory) for directory in directories])
-    return write_whole(out, text.encode("ascii"))
+    return write_whole(out, csource.source(_models(sources)).encode("ascii"))
 
 
-def export_raw(paths: Sequence[Path], out: Path) -> Path:
+def export_exr(sources: Sequence[Source], out: Path) -> Path:
+    """The files of each directory's model."""
+    for model in _named_apart(_models(sources)):
+        exr.write_model(out / model.name, model)
+    return out
+
+
+def export_raw(sources: Sequence[Source], out: Path) -> Path:
     """Raw floats with a JSON sidecar: each table, and the stream of each directory's model."""
-    models = [exr.read_model(path) for path in paths if path.is_dir()]
-    names = [model.name for model in models]
-    if len(set(names)) < len(names):
-        raise HairlutError(f"models {', '.join(names)}: expected a different name for each directory")
-    _each(paths, out, arrays.write_raw)
+    models = _named_apart(_models(sources))
+    _each(sources, out, arrays.write_raw)
     for model in models:
         arrays.write_stream(model, out)
     return out
 
 
-def export_npz(paths: Sequence[Path], out: Path) -> Path:
+def export_npz(sources: Sequence[Source], out: Path) -> Path:
     """One npz for each table."""
-    return _each(paths, out, arrays.write_npz)
+    return _each(sources, out, arrays.write_npz)
 
 
-def _each(paths: Sequence[Path], out: Path, write: Callable[[Table, dict, Path], list[Path]]) -> Path:
-    for table, errors in [found for path in paths for found in _tables(path)]:
-        write(table, errors, out)
+def _each(sources: Sequence[Source], out: Path, write: Callable[[Table, Errors, Path], list[Path]]) -> Path:
+    for source in sources:
+        for table, errors in source.tables:
+            write(table, errors, out)
     return out
 
 
-def _tables(path: Path) -> list[tuple[Table, dict[str, float]]]:
-    """The table of a file, or those of a model's directory, with their measured errors."""
-    if not path.is_dir():
-        return [exr.read(path)]
-    model = exr.read_model(path)
-    return [(table, model.errors[table.name]) for table in model.tables]
+def _models(sources: Sequence[Source]) -> list[BakedModel]:
+    return [source.model for source in sources if source.model]
 
 
-TARGETS: dict[str, Callable[[Sequence[Path], Path], Path]] = {
+def _named_apart(models: list[BakedModel]) -> list[BakedModel]:
+    names = [model.name for model in models]
+    if len(set(names)) < len(names):
+        raise HairlutError(f"models {', '.join(names)}: expected a different name for each directory")
+    return models
+
+
+SINGLE_TABLES = ("raw", "npz")
+CARRY_PARAMETERS = ("exr",)
+TARGETS: dict[str, Callable[[Sequence[Source], Path], Path]] = {
     "c": export_c,
+    "exr": export_exr,
     "raw": export_raw,
     "npz": export_npz,
 }

@@ -6,20 +6,24 @@ Every number is computed again. The lobe is that of the model and table that the
 formula, domain and range must be the header's. Every texel is compared with the quantile and the slope of its
 row, and the errors of the table are measured and compared with those that the header claims. The files of a
 directory must belong together: mixture.exr names its tables by their digests. A model that was fitted to data
-has no lobes to compare with; its files are checked for being whole and of one bake.
+has no lobes to compare with; its files are checked for being whole and of one bake. What a model draws over
+parameters of the hair is checked at random ones: each table's density, found from the angle, integrates to 1.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from . import exr, manifest, mixturefile
+from . import exr, interpolant, manifest, mixturefile
+from .axes import Axis
 from .errors import HairlutError
 from .exact import exact_at
 from .lobes import MODELS, NO_FORMULA, Array, Lobe, Model
-from .measure import ON_ROWS, Errors, inclinations, measure
+from .measure import NODES, ON_ROWS, WEIGHTS, Errors, inclinations, measure
 from .mixture import constant
+from .model import BakedModel
 from .modelfile import load
 from .table import Table, tabulate
 
@@ -28,6 +32,8 @@ NOISE = 1e-12  # rad, of the quantile itself
 SLOPE_OFF = 1e-4  # relative: a slope at an end follows from a small difference of two quantiles
 SHARE_OFF = 1e-6
 NOT_COMPARED = "fitted to a BSDF: checked for form and digest, but not against the BSDF"
+PLACES = 64  # random parameters and viewers
+DENSITY_OFF = 1e-6
 CLAIM_SLACK = 1.01
 CLAIM_NOISE = 1e-9
 
@@ -83,11 +89,43 @@ def _incomplete(directory: Path, reports: list[Report]) -> list[Report]:
     if not all(report.ok for report in reports if report.path.parent == directory):
         return []
     try:
-        exr.read_model(directory)
+        model = exr.read_model(directory)
     except HairlutError as error:
         path, _, problem = str(error).partition(": ")
         return [Report(Path(path), [problem])]
-    return []
+    problems = _at_random_parameters(model) if model.parameters else []
+    return [Report(directory, problems)] if problems else []
+
+
+def _at_random_parameters(model: BakedModel) -> list[str]:
+    """One problem for each table whose density does not integrate to 1 at random parameters and viewers."""
+    random = np.random.default_rng(24)
+    given = {p.name: random.uniform(p.least, p.most, PLACES) for p in model.parameters}
+    problems = []
+    for table in model.tables:
+        theta_r = random.uniform(*table.theta_r_range, PLACES)
+        mass = _mass(table, theta_r, given)
+        n = int(abs(mass - 1).argmax())
+        if not abs(mass[n] - 1) <= DENSITY_OFF:
+            place = ", ".join(f"{axis.name} = {given[axis.name][n]:.6g}" for axis in table.axes)
+            problems.append(
+                f"{table.name}: the density integrates to {mass[n]:.9g}, expected 1, at theta_r = "
+                f"{theta_r[n]:.6g}, {place}: bake the model again"
+            )
+    return problems
+
+
+def _mass(table: Table, theta_r: Array, given: dict[str, Array]) -> Array:
+    """(n,) the integral over each cell of the density of its angles, by Gauss-Legendre sums."""
+    cells = interpolant.cells(table, theta_r, given)
+    x, slope = cells.read(NODES)
+
+    def spread(values: Array) -> Array:
+        return np.broadcast_to(values[:, None, None], x.shape).ravel()
+
+    each = {axis.name: spread(given[axis.name]) for axis in table.axes}
+    density = interpolant.pdf(table, spread(theta_r), x.ravel(), each).reshape(x.shape)
+    return np.einsum("nik,i,k->n", density * slope, cells.h, WEIGHTS)
 
 
 def verify_file(path: Path, models: dict[str, Model]) -> Report:
@@ -105,8 +143,13 @@ def verify_file(path: Path, models: dict[str, Model]) -> Report:
 
 def _verify_mixture(path: Path, models: dict[str, Model], report: Report) -> None:
     found = mixturefile.read(path)
-    report.size = f"{len(found.mixture.theta_r)}x{len(found.mixture.offset)}"
+    report.size = f"{len(found.mixture.theta_r)}x{len(found.mixture.offset)}" + _nodes(found.mixture.axes)
     model = models.get(found.model)
+    if model is not None and found.parameters:
+        raise HairlutError(
+            f"attribute hairlut.axes names {', '.join(p.name for p in found.parameters)}, but the lobes of "
+            f"{found.model} depend on no parameters"
+        )
     if model is None:
         if any(table.parameters != NO_FORMULA for table in exr.read_model(path.parent).tables):
             raise HairlutError(_unknown(found.model, models))
@@ -127,7 +170,7 @@ def _verify_mixture(path: Path, models: dict[str, Model], report: Report) -> Non
 
 def _verify_table(path: Path, models: dict[str, Model], report: Report) -> None:
     table, report.claimed = exr.read(path)
-    report.size = f"{table.width}x{table.height}"
+    report.size = f"{table.width}x{table.height}" + _nodes(table.axes)
     if table.model not in models and table.parameters == NO_FORMULA:
         report.note = NOT_COMPARED
         return
@@ -139,6 +182,11 @@ def _verify_table(path: Path, models: dict[str, Model], report: Report) -> None:
     errors = measure(table, lobe, exact=exact)
     report.measured = errors.summary()
     report.problems += _claims(errors, report.claimed)
+
+
+def _nodes(axes: Sequence[Axis]) -> str:
+    """Their numbers, to follow a size."""
+    return "".join(f"x{len(axis.nodes)}" for axis in axes)
 
 
 def _unknown(model: str, models: dict[str, Model]) -> str:
@@ -157,6 +205,11 @@ def _lobe(path: Path, table: Table, models: dict[str, Model]) -> Lobe:
         raise HairlutError(
             f"attribute hairlut.model is {table.model!r}, but the directory is {directory!r}: "
             "a table of another model stands under this one's name"
+        )
+    if table.axes:
+        raise HairlutError(
+            f"attribute hairlut.axes names {table.axes[0].name}, but the lobes of {table.model} depend on no "
+            "parameters"
         )
     lobe = getattr(models[table.model], table.name, None)
     if lobe is None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from hairlut.axes import Axis, Parameter, node_count
-from hairlut.lobes import Array
+from hairlut.lobes import NO_FORMULA, Array
 from hairlut.mixture import Mixture
 from hairlut.model import BakedLobe, BakedModel
 from hairlut.slopes import derived
@@ -48,7 +48,7 @@ def table(name: str, depends: tuple[Axis, ...], random: np.random.Generator) -> 
         azimuth="difference" if is_phi else "none",
         domain=domain,
         theta_r_range=(-np.pi / 2, np.pi / 2),
-        parameters="random",
+        parameters=NO_FORMULA,
         warp=warp,
         texels=texels,
         slopes=slopes.astype(np.float32),

@@ -3,11 +3,13 @@
 
 import argparse
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
 from .. import exr, mixturefile
+from ..axes import Axis
 from ..table import Table
 from . import OK, add_command
 
@@ -47,11 +49,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 def describe_mixture(path: Path, file: mixturefile.MixtureFile) -> dict:
-    """A mixture as plain data; share and turn: a row for each theta_r, and in it a number for each offset."""
+    """A mixture as plain data; share and turn: nested lists over the axes, theta_r and the offset."""
     mixture = file.mixture
     return {
         "file": str(path),
         "model": file.model,
+        "parameters": [asdict(parameter) for parameter in file.parameters],
+        "axes": _nodes(mixture.axes),
         "theta_r": mixture.theta_r.tolist(),
         "offset": mixture.offset.tolist(),
         "mirrored": mixture.mirrored,
@@ -64,16 +68,26 @@ def describe_mixture(path: Path, file: mixturefile.MixtureFile) -> dict:
     }
 
 
+def _nodes(axes: tuple[Axis, ...]) -> dict[str, list[float]]:
+    """Nodes of parameters of the hair, by name."""
+    return {axis.name: axis.nodes.tolist() for axis in axes}
+
+
 def _mixture_text(report: dict) -> str:
     rows, columns = len(report["theta_r"]), len(report["offset"])
     lines = [f"{report['file']}: model {report['model']}, {len(report['lobes'])} lobes"]
+    for parameter in report["parameters"]:
+        name, nodes = parameter["name"], len(report["axes"].get(parameter["name"], [0]))
+        least, most, standard = (f"{parameter[key]:.6g}" for key in ("least", "most", "standard"))
+        lines.append(f"  {name:12}{nodes} from {least} to {most}, standard {standard}")
     lines += [
         f"  {name:12}{len(values)} from {values[0]:.6g} to {values[-1]:.6g}"
         for name, values in (("theta_r", report["theta_r"]), ("offset", report["offset"]))
     ]
     lines += [f"  {'mirrored':12}{'yes' if report['mirrored'] else 'no'}"]
     lines += [f"  error.{name:18} {value:.3e}" for name, value in report["errors"].items()]
-    lines += ["", f"  over {rows} theta_r and {columns} offsets: share, turn [deg], tables"]
+    over = "".join(f"{len(nodes)} {name}, " for name, nodes in report["axes"].items())
+    lines += ["", f"  over {over}{rows} theta_r and {columns} offsets: share, turn [deg], tables"]
     for lobe in report["lobes"]:
         share, turn = np.array(lobe["share"]), np.degrees(lobe["turn"])
         ranges = f"{share.min():.3f} to {share.max():.3f}  {turn.min():9.2f} to {turn.max():.2f}"
@@ -84,11 +98,13 @@ def _mixture_text(report: dict) -> str:
 def describe(path: Path, table: Table, errors: dict[str, float]) -> dict:
     """A file as plain data."""
     widths = np.diff(table.texels.astype(float), axis=1).min(axis=1)
-    rows = zip(table.theta_r.tolist(), table.log_mass.tolist(), widths.tolist(), strict=True)
+    theta_r = np.tile(table.theta_r, len(widths) // table.height).tolist()
+    rows = zip(theta_r, table.log_mass.tolist(), widths.tolist(), strict=True)
     return {
         "file": str(path),
         "width": table.width,
         "height": table.height,
+        "axes": _nodes(table.axes),
         "bytes_of_texels": table.nbytes,
         "bytes_of_file": path.stat().st_size,
         "header": exr.attributes(table),
@@ -104,9 +120,10 @@ LONG = ("hairlut.knots", "hairlut.log_mass")
 
 
 def _text(report: dict) -> str:
+    nodes = " x ".join(f"{len(each)} {name}" for name, each in report["axes"].items())
+    size = f"{report['width']}x{report['height']} texels" + f" for each of {nodes}" * bool(nodes)
     lines = [
-        f"{report['file']}: {report['width']}x{report['height']} texels, {report['bytes_of_texels']} bytes "
-        f"({report['bytes_of_file']} in the file)"
+        f"{report['file']}: {size}, {report['bytes_of_texels']} bytes ({report['bytes_of_file']} in the file)"
     ]
     lines += [f"  {name:24}{value}" for name, value in report["header"].items() if name not in LONG]
     lines += [f"  error.{name:18} {value:.3e}" for name, value in report["errors"].items()]

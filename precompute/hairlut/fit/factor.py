@@ -35,7 +35,9 @@ FIRST_STEPS = 150
 
 def excess(p: Array, q: Array) -> Array:
     """(p / q)^POWER, bounded."""
-    ratio = np.minimum(p / np.maximum(q, TINY), LARGEST)
+    ratio = np.maximum(q, TINY)
+    np.divide(p, ratio, out=ratio)
+    np.minimum(ratio, LARGEST, out=ratio)
     ratio *= ratio
     ratio *= ratio
     return ratio

@@ -21,9 +21,9 @@ from .factor import FILL, POWER, TINY, excess, filled, products, update, varianc
 from .highlights import Highlight, highlights
 from .turning import TWO_PI, track, turned
 
-FIRST_SWEEPS, TRIAL_SWEEPS, SWEEPS = 60, 16, 30
+FIRST_SWEEPS, TRIAL_SWEEPS, SWEEPS = 60, 16, 16
 SAME_SWEEPS = 10
-FREE_STEPS = 40
+FREE_STEPS = 20
 FRESH = 0.02  # part of what the last theta_r lets expect that is replaced by the new one's light
 FAINT = 1e-3  # a lobe of this share is half what was expected
 PULL = 0.03

@@ -28,7 +28,7 @@ from .turning import TWO_PI
 
 MAX_LOBES = 8
 GAIN = 0.001
-"""A lobe is worth its memory if it lowers V by this much, and"""
+"""Lobes are worth their memory if they lower V by this much, and"""
 PART = 0.2
 """by this part of the least V of all numbers of lobes."""
 HEAVIEST = 10.0  # a weight that is a firefly
@@ -142,7 +142,7 @@ def _first_axes(hair: Hair) -> Axes:
 
 
 def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
-    """How many lobes gain, on three viewers."""
+    """How many lobes gain, on three viewers: more are tried until two of them gain nothing."""
     theta_r = hair.rows(13)[[2, 6, 9]]
     data = _cells(hair, theta_r, hair.angles(axes.offset), axes)
     angle = hair.angles(axes.offset)
@@ -152,8 +152,13 @@ def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
         report("choosing lobes", count / MAX_LOBES)
         rows = [one_more(row, mass, angle, hair.offsets) for row, mass in zip(rows, data.mass, strict=True)]
         reached.append(np.mean([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)]))
-        if reached[-1] < GAIN:
+        if reached[-1] < GAIN or _enough(reached) < count - 1:
             break
+    return _enough(reached)
+
+
+def _enough(reached: list[float]) -> int:
+    """The least number of lobes than which more gain too little; reached: V of 1, 2, 3... of them."""
     least = min(reached)
     return next(k + 1 for k, v in enumerate(reached) if v <= least + max(GAIN, PART * least))
 
@@ -232,7 +237,7 @@ def _expected(data: Cells, rows: dict[int, Row], j: int, before: int) -> Row:
     middles = (new[1:] + new[:-1]) / 2 + moved
     density = last.theta / np.diff(old)[:, None]
     theta = np.stack([np.interp(middles, (old[1:] + old[:-1]) / 2, one) for one in density.T], axis=1)
-    theta = (theta + 1e-30) * np.diff(new)[:, None]
+    theta = ((theta + 1e-30) * np.diff(new)[:, None]).astype(last.theta.dtype)
     went = 0.0 if second is None else np.clip(last.turn - second.turn, -FARTHEST, FARTHEST)
     return replace(last, theta=theta / theta.sum(axis=0), turn=last.turn + went)
 
@@ -240,7 +245,7 @@ def _expected(data: Cells, rows: dict[int, Row], j: int, before: int) -> Row:
 def _at_all(row: Row, mass: Array, some: Array, angle: Array, turning: bool) -> Row:
     """The row of some offsets at all of them."""
     share, turn = (
-        np.stack([np.interp(angle, some, part[:, k]) for k in range(part.shape[1])], axis=1)
+        np.stack([np.interp(angle, some, part[:, k]) for k in range(part.shape[1])], axis=1).astype(part.dtype)
         for part in (row.share, row.turn)
     )
     return same_shapes(replace(row, share=share, turn=turn), mass, angle, turning)

@@ -20,20 +20,27 @@ def turned(mass: Array, angle: Array) -> Array:
     """(..., m) masses turned by angle (...), rad: by cubics between the cells (Catmull and Rom), none below
     the lesser of the two cells that it lies between: beside a steep peak a cubic would fall to 0."""
     cells = mass.shape[-1]
-    steps = np.asarray(angle)[..., None] * (cells / TWO_PI)
-    whole = np.floor(steps).astype(int)
-    t = steps - whole
-    shape = np.broadcast_shapes(mass.shape, (*whole.shape[:-1], cells))
-    a, b, c, d = (
-        np.take_along_axis(
-            np.broadcast_to(mass, shape),
-            np.broadcast_to((np.arange(cells) - whole + k) % cells, shape),
-            -1,
-        )
-        for k in (1, 0, -1, -2)
-    )
-    cubic = b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)))
-    return np.maximum(cubic, np.minimum(b, c))
+    steps = np.asarray(angle) * (cells / TWO_PI)
+    whole = np.floor(steps)
+    t = (steps - whole).astype(mass.dtype)[..., None]
+    before, low, high, after = _neighbours(mass, -whole.astype(int) % cells)
+    result = (t * (2 * t - t * t - 1) / 2) * after
+    result += (1 + t * t * (3 * t - 5) / 2) * high
+    result += (t * (1 + t * (4 - 3 * t)) / 2) * low
+    result += (t * t * (t - 1) / 2) * before
+    return np.maximum(result, np.minimum(low, high), out=result)
+
+
+def _neighbours(mass: Array, first: Array) -> tuple[Array, ...]:
+    """Four views (..., m): the cells two before, one before, at and one after each, counted around the circle
+    from the cell number first (...), of masses (..., m)."""
+    m = mass.shape[-1]
+    ring = np.concatenate([mass[..., -2:], mass, mass], axis=-1)
+    whole = np.lib.stride_tricks.sliding_window_view(ring, m + 3, axis=-1)  # of each first cell
+    lead = np.broadcast_shapes(mass.shape[:-1], first.shape)
+    whole = np.broadcast_to(whole, (*lead, *whole.shape[-2:]))
+    at = whole[(*np.ogrid[tuple(map(slice, lead))], np.broadcast_to(first, lead))]
+    return tuple(at[..., k : k + m] for k in range(4))
 
 
 def track(mass: Array, light: Array, shape: Array) -> Array:

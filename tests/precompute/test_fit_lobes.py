@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from scipy import special, stats
 
-from hairlut.fit import smooth
+from hairlut import interpolant
+from hairlut.fit import smooth, tables
 from hairlut.fit.cells import Cells
 from hairlut.fit.factor import most_different, products, variance
 from hairlut.fit.highlights import highlights
@@ -228,6 +229,22 @@ def test_smooth_rows_keep_the_masses_and_come_close_to_the_density():
     np.testing.assert_allclose(
         rows.quantiles(u, np.zeros(31, bool))[0][inside], edges[0, 1:-1][inside], atol=1e-3
     )
+
+
+def test_the_table_of_a_faint_lobe_has_its_tails():
+    """Its variance would allow anything; at azimuths where no other lobe draws, its weights count."""
+    theta_r = np.linspace(-1, 1, 13)
+    edges = np.tile(np.linspace(-np.pi / 2, np.pi / 2, 33), (13, 1))
+    mass = np.diff(stats.norm.cdf(edges, -0.5 * theta_r[:, None], 0.4), axis=1)
+    exact = smooth.rows(theta_r, edges, mass, False)
+    need = tables.Need(np.full(13, 1e-3), np.full(13, 1e-3), 1e-3)
+    table = tables.smallest("faint_theta", "hair", exact, need)
+    read = interpolant.cells(table, theta_r)
+    f = np.linspace(0.01, 0.99, 50)
+    x = read.angle(f)
+    light = exact.density(x, np.arange(13)[:, None, None])
+    bright = light / np.cos(x) > 2e-3 * (light / np.cos(x)).max(axis=(1, 2), keepdims=True)
+    assert (light * read.slope(f))[bright].max() < 1.2 * tables.HEAVIEST
 
 
 def test_improving_an_exact_row_changes_nothing_much(row):

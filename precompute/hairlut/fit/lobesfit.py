@@ -23,7 +23,7 @@ from .turning import TWO_PI, track, turned
 
 FIRST_SWEEPS, TRIAL_SWEEPS, SWEEPS = 60, 16, 16
 SAME_SWEEPS = 10
-FREE_STEPS = 20
+FREE_STEPS = 10
 FRESH = 0.02  # part of what the last theta_r lets expect that is replaced by the new one's light
 FAINT = 1e-3  # a lobe of this share is half what was expected
 PULL = 0.03
@@ -134,8 +134,8 @@ def same_shapes(expected: Row, mass: Array, angle: Array, turning: bool) -> Row:
 
 
 def _moved(expected: Row, mass: Array, turning: bool, moving: bool) -> Row:
-    """The expected lobes with the shares and turns that free azimuths have; moving: with free
-    inclinations."""
+    """The expected lobes with the shares that free azimuths have, and each lobe turned as a whole; moving:
+    with free inclinations."""
     light = mass.sum(axis=(0, 2))[:, None] / len(mass)
     theta = (1 - FRESH) * expected.theta + FRESH * light if moving else expected.theta
     fresh = FRESH / len(expected.phi) * mass.sum(axis=1, keepdims=True)
@@ -143,7 +143,7 @@ def _moved(expected: Row, mass: Array, turning: bool, moving: bool) -> Row:
     flat = azimuths.transpose(1, 0, 2).reshape(len(expected.phi), -1)
     _, flat = update(_flat(mass), theta, flat, FREE_STEPS, moving)
     share, each = _by_offset(flat, len(mass))
-    turn = expected.turn + _towards(each, share, expected) if turning else expected.turn
+    turn = expected.turn + _further(each, share, expected) if turning and moving else expected.turn
     return replace(expected, share=share / share.sum(axis=1, keepdims=True), turn=turn)
 
 
@@ -216,15 +216,17 @@ def _bend(angle: Array) -> Array:
     return rows.T @ rows
 
 
-def _towards(each: Array, light: Array, expected: Row) -> Array:
-    """(N, K) by how much the azimuths (N, K, m) are turned from the expected ones, where there is light."""
+def _further(each: Array, light: Array, expected: Row) -> Array:
+    """(K,) by how much the azimuths (N, K, m) are turned from the expected ones, all offsets together: at one
+    offset alone, a faint lobe would jump to where another one is brighter."""
     m = each.shape[2]
-    at = expected.turned()
-    agreement = np.fft.irfft(np.fft.rfft(each) * np.conj(np.fft.rfft(at)), m)
+    agreement = np.fft.rfft(each) * np.conj(np.fft.rfft(expected.turned()))
+    agreement = np.fft.irfft((light[..., None] * agreement).sum(axis=0), m)
     reach = max(int(REACH * m / TWO_PI), 1)
     near = np.concatenate([agreement[..., -reach:], agreement[..., : reach + 1]], axis=-1)
     peak = (near.argmax(axis=-1) - reach) * (TWO_PI / m)
-    return peak * (light / (light + FAINT))
+    mean = light.mean(axis=0)
+    return peak * (mean / (mean + FAINT))
 
 
 def _flat(mass: Array) -> Array:

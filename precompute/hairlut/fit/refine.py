@@ -245,7 +245,9 @@ def _expected(data: Cells, rows: dict[int, Row], j: int, before: int) -> Row:
 def _at_all(row: Row, mass: Array, some: Array, angle: Array, turning: bool) -> Row:
     """The row of some offsets at all of them."""
     share, turn = (
-        np.stack([np.interp(angle, some, part[:, k]) for k in range(part.shape[1])], axis=1).astype(part.dtype)
+        np.stack([np.interp(angle, some, part[:, k]) for k in range(part.shape[1])], axis=1).astype(
+            part.dtype
+        )
         for part in (row.share, row.turn)
     )
     return same_shapes(replace(row, share=share, turn=turn), mass, angle, turning)
@@ -257,30 +259,37 @@ def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -
     around = np.tile(np.linspace(0, TWO_PI, rows[0].phi.shape[1] + 1), (len(rows), 1))
     share = np.stack([row.share for row in rows]).transpose(2, 0, 1)
     turn = wrap(np.stack([row.turn for row in rows]).transpose(2, 0, 1))
+    bright = _bright(data.theta_edges, rows)
     for k in range(len(share)):
-        lobe, importance = f"lobe{k}", share[k].mean(axis=1)
-        azimuths = np.stack([row.phi[k] for row in rows])
-        theta = smooth.rows(
-            data.theta_r, data.theta_edges, np.stack([row.theta[:, k] for row in rows]), False
+        lobe, need = f"lobe{k}", tables.Need(share[k].mean(axis=1), bright[k], loss)
+        inclinations, azimuths = (
+            np.stack(part) for part in zip(*((r.theta[:, k], r.phi[k]) for r in rows), strict=True)
         )
-        lobes.append(
-            BakedLobe(
-                lobe,
-                tables.smallest(f"{lobe}_theta", name, theta, importance, loss),
-                None
-                if _uniform(azimuths, importance, loss)
-                else tables.smallest(
-                    f"{lobe}_phi", name, smooth.rows(data.theta_r, around, azimuths, True), importance, loss
-                ),
+        theta = smooth.rows(data.theta_r, data.theta_edges, inclinations, False)
+        phi = None
+        if not _uniform(azimuths, need):
+            phi = tables.smallest(
+                f"{lobe}_phi", name, smooth.rows(data.theta_r, around, azimuths, True), need
             )
-        )
+        lobes.append(BakedLobe(lobe, tables.smallest(f"{lobe}_theta", name, theta, need), phi))
     mixture = Mixture(tuple(one.name for one in lobes), data.theta_r, data.offset, share, turn, mirrored)
     return BakedModel(name, tuple(lobes), mixture)
 
 
-def _uniform(azimuths: Array, importance: Array, loss: float) -> bool:
+def _bright(theta_edges: Array, rows: list[Row]) -> Array:
+    """(K, J) part of a lobe's own peak of f cos(theta_i) that is BRIGHT of the brightest lobe's."""
+    size = np.diff(theta_edges) * np.cos((theta_edges[:, 1:] + theta_edges[:, :-1]) / 2)
+    peak = [
+        (row.theta / at[:, None]).max(axis=0) * row.phi.max(axis=1) * row.share.max(axis=0)
+        for row, at in zip(rows, size, strict=True)
+    ]
+    peak = np.array(peak).T
+    return promise.BRIGHT * peak.max(axis=0) / peak
+
+
+def _uniform(azimuths: Array, need: tables.Need) -> bool:
     """Whether uniform draws lose no more for azimuths (J, m) than a table may."""
-    return bool((importance * variance(azimuths, np.full(azimuths.shape, 1.0), 1)).max() <= loss)
+    return bool((need.importance * variance(azimuths, np.full(azimuths.shape, 1.0), 1)).max() <= need.loss)
 
 
 def _losses(

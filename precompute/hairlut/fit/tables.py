@@ -6,6 +6,8 @@ them, and what it loses on the others is measured there."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from .. import interpolant
@@ -18,49 +20,63 @@ from .turning import TWO_PI
 
 WIDTHS = 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256
 EXPONENTS = -5, -8, -11, -14, -17  # of the warp's e
-HEAVY = 4.0  # above this weight, a table's loss counts as many times as its weight is larger
+HEAVIEST = 4.0
+"""The largest weight that a table may cause where its lobe is bright: lobes of little light are alone at some
+azimuths, so that their importance does not forgive it."""
 FROM_WIDTH = 0.5  # part of the loss that the width may make; the rest is the height's
 _nodes, _weights = np.polynomial.legendre.leggauss(4)
 NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
 
 
-def smallest(name: str, model: str, exact: SmoothRows, importance: Array, loss: float) -> Table:
-    """The table of fewest texels that loses at most `loss`, or else the best one. importance (J,): the
-    lobe's share in the light of each row, by which its variance counts."""
-    best = _widest_enough(name, model, exact, importance, loss * FROM_WIDTH)
+@dataclass(frozen=True)
+class Need:
+    """What each row of a table is worth, (J,): importance, the lobe's share in the row's light; bright, the
+    part of the row's own peak above which its weights count. loss: relative variance that it may cost."""
+
+    importance: Array
+    bright: Array
+    loss: float
+
+
+def smallest(name: str, model: str, exact: SmoothRows, need: Need) -> Table:
+    """The table of fewest texels that does what is needed, or else the best one."""
+    best = _widest_enough(name, model, exact, replace(need, loss=need.loss * FROM_WIDTH))
     last = len(exact.theta_r) - 1
     for step in (s for s in range(last, 1, -1) if last % s == 0):
         table = _table(name, model, exact, best.width, best.warp, step)
-        if table and _loss(table, exact, importance) <= loss:
+        if table and _lost(table, exact, need) <= 1:
             return table
     return best
 
 
-def _widest_enough(name: str, model: str, exact: SmoothRows, importance: Array, loss: float) -> Table:
+def _widest_enough(name: str, model: str, exact: SmoothRows, need: Need) -> Table:
     best: tuple[float, Table] | None = None
     for width in WIDTHS:
         for exponent in EXPONENTS:
             table = _table(name, model, exact, width, Warp("octaves", 2.0**exponent), 1)
             if not table:
                 continue
-            lost = _loss(table, exact, importance)
+            lost = _lost(table, exact, need)
             if best is None or lost < best[0]:
                 best = lost, table
-        if best and best[0] <= loss:
+        if best and best[0] <= 1:
             break
     if best is None:
         raise HairlutError(f"{model}/{name}: its light is too narrow for a table of 32-bit floats")
     return best[1]
 
 
-def _loss(table: Table, exact: SmoothRows, importance: Array) -> float:
-    """The worst row's relative variance, times its importance; more where weights are large."""
+def _lost(table: Table, exact: SmoothRows, need: Need) -> float:
+    """The worst row's variance or largest weight, as a part of what is allowed."""
     read = interpolant.cells(table, exact.theta_r)
     x, slope = read.angle(NODES), read.slope(NODES)
-    weight = exact.density(x, np.arange(len(x))[:, None, None]) * slope
+    density = exact.density(x, np.arange(len(x))[:, None, None])
+    weight = density * slope
     variance = (((weight - 1) ** 2 @ WEIGHTS) * read.h).sum(axis=1)
-    heavy = np.maximum(weight.max(axis=(1, 2)) / HEAVY, 1.0)
-    return float((variance * heavy * importance).max())
+    light = density / np.cos(x) if table.angle == "theta_i" else density
+    bright = light > need.bright[:, None, None] * light.max(axis=(1, 2), keepdims=True)
+    heaviest = np.where(bright, weight, 0.0).max()
+    return float(max((variance * need.importance).max() / need.loss, heaviest / HEAVIEST))
 
 
 def _table(name: str, model: str, exact: SmoothRows, width: int, warp: Warp, step: int) -> Table | None:

@@ -8,6 +8,7 @@ an error like any other.
 
 from __future__ import annotations
 
+import builtins
 import io
 import os
 import sys
@@ -19,6 +20,7 @@ from functools import wraps
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
+from typing import NoReturn
 
 import numpy as np
 
@@ -129,11 +131,12 @@ def reason(error: BaseException) -> str:
 def _without_streams() -> Iterator[None]:
     """No standard input, and prints on standard error."""
     kept, sys.stdin = sys.stdin, _NoInput()
+    ask, builtins.input = builtins.input, _no_input
     try:
         with redirect_stdout(sys.stderr):
             yield
     finally:
-        sys.stdin = kept
+        sys.stdin, builtins.input = kept, ask
 
 
 @contextmanager
@@ -142,11 +145,16 @@ def _put_back() -> Iterator[None]:
         yield
 
 
+def _no_input(prompt: object = "") -> NoReturn:
+    """input() without its prompt: nobody is asked."""
+    raise HairlutError("reads standard input: give the file what it needs in another file")
+
+
 class _NoInput(io.TextIOBase):
     """A standard input that refuses to be read."""
 
     def readline(self, size: int = -1) -> str:
-        raise HairlutError("reads standard input: give the file what it needs in another file")
+        _no_input()
 
     def read(self, size: int = -1) -> str:
         return self.readline()

@@ -207,6 +207,18 @@ def test_a_file_that_is_wrong_is_refused_in_one_line(tmp_path, capsys, text, exp
     assert not (tmp_path / "out").exists()
 
 
+def test_a_file_that_asks_shows_no_prompt(tmp_path, capsys):
+    for text in (
+        "def bsdf(theta_r, theta_i, phi):\n    return input('roughness? ')\n",
+        "input('roughness? ')\n",
+    ):
+        path = fitted(tmp_path, text)
+        assert cli.main(["fit", str(path), "--out", str(tmp_path / "out")]) == cli.WRONG_USE
+        said = capsys.readouterr()
+        assert "reads standard input" in said.err
+        assert "roughness?" not in said.err + said.out
+
+
 @pytest.mark.parametrize(
     "options",
     [

@@ -63,9 +63,9 @@ def guarded(function: Callable, path: Path) -> Callable:
     """A function of the file whose failures are HairlutErrors, as those of run_file."""
 
     @wraps(function)
-    def call(*arguments):
+    def call(*arguments, **named):
         with _named(path), _without_streams():
-            return function(*arguments)
+            return function(*arguments, **named)
 
     return call
 

@@ -5,7 +5,8 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
 
@@ -13,7 +14,7 @@ from ..errors import HairlutError
 from . import OK, add_command
 
 DEFAULT_TOLERANCE = 0.01
-DEFAULT_BUDGET = 120.0
+DEFAULT_BUDGET, DEFAULT_BUDGET_OF_PARAMETERS = 120.0, 600.0
 MAX_LOBES = 8
 
 Report = Callable[[str, float], None]
@@ -36,6 +37,16 @@ viewer and of the light from the plane normal to the fibre, and phi = phi_i - ph
 where across its width the fibre is hit, in radii; from there its surface reflects to phi = -2 asin(offset). A
 hair whose highlights depend on it is drawn with the offset known. precompute/examples/chiang2016.py is a
 whole file, made from a paper in 40 lines.
+
+A hair whose parameters vary from strand to strand names them with their ranges, and a standard value where
+that is not the middle; bsdf gets them by name, and one model samples them all:
+
+    PARAMETERS = {"beta_m": (0.05, 0.6), "absorption": (0.05, 5.0, 0.4)}
+
+    def bsdf(theta_r, theta_i, phi, offset, beta_m, absorption):
+        ...
+
+precompute/examples/chiang_parameters.py is such a file.
 
 Other data: a header line with theta_r, theta_i, phi, value (radians; theta_r_deg and so on for degrees), as
 CSV, or arrays of these names as npz; offset, within [-1, 1], is one column more. Coordinates that repeat are
@@ -74,9 +85,9 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     parser.add_argument(
         "--budget",
         type=float,
-        default=DEFAULT_BUDGET,
         metavar="SECONDS",
-        help="time after which the best fit so far is taken (default: %(default)g)",
+        help=f"time after which the best fit so far is taken (default: {DEFAULT_BUDGET:g}, for a hair with "
+        f"parameters {DEFAULT_BUDGET_OF_PARAMETERS:g})",
     )
     parser.add_argument("--json", action="store_true", help="print the result as JSON, and nothing else")
     parser.add_argument(
@@ -121,7 +132,10 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
     from ..fit.read import Draws, read
 
     if args.data.suffix == ".py":
-        return _of_hair(hair.of_density(*bsdf.load(args.data)), "a BSDF", args, name, report)
+        density, offsets, parameters = bsdf.load(args.data)
+        if parameters:
+            return _of_parameters(density, offsets, parameters, args, name, report)
+        return _of_hair(hair.of_density(density, offsets), "a BSDF", args, name, report)
     data = read(args.data)
     if isinstance(data, Draws):
         from ..fit import drawn
@@ -140,27 +154,66 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
 def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: Report) -> tuple:
     from ..fit import refine, summary, warnings
 
-    try:
-        found = refine.fit(given, name, args.tolerance, args.lobes, args.budget, report)
-    except HairlutError as error:
-        if str(error).startswith(str(args.data)):
-            raise
-        raise HairlutError(f"{args.data}: {error}") from None
+    with _named(args.data):
+        found = refine.fit(given, name, args.tolerance, args.lobes, args.budget or DEFAULT_BUDGET, report)
     if args.plot:
-        _plot(given, found, args.plot, name)
+        _plot(args.plot, lambda kind: _plotted(given, found, name, kind))
     figures = {"data": str(what), **summary.data(found, args.tolerance)}
     text = f"{args.data}: {what}\n{summary.text(found, args.tolerance)}"
     return summary.with_errors(found), text, figures, warnings.warnings(given, found.promised)
 
 
-def _plot(given, found, path: Path, name: str) -> None:
+def _of_parameters(
+    density: Callable, offsets: bool, parameters: tuple, args: argparse.Namespace, name: str, report: Report
+) -> tuple:
+    from ..fit import box, boxsummary, promise, warnings
+    from ..fit import parameters as fitting
+
+    budget = args.budget or DEFAULT_BUDGET_OF_PARAMETERS
+    with _named(args.data):
+        given = box.of_parameters(density, parameters, offsets)
+        found = fitting.fit(given, name, args.tolerance, args.lobes, budget, report)
+    if args.plot:
+        _plot(args.plot, lambda kind: _plotted_parameters(found, name, kind))
+    what = f"a BSDF over {', '.join(parameter.name for parameter in parameters)}"
+    figures = {"data": what, **boxsummary.data(found, args.tolerance)}
+    text = f"{args.data}: {what}\n{boxsummary.text(found, args.tolerance)}"
+    at = found.measured
+    losses = promise.Losses(at.theta_r, at.offset, at.variance, at.weight, at.light)
+    return boxsummary.with_errors(found), text, figures, warnings.warnings(given.hair, losses)
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Puts the path before errors that do not name it."""
+    try:
+        yield
+    except HairlutError as error:
+        if str(error).startswith(str(path)):
+            raise
+        raise HairlutError(f"{path}: {error}") from None
+
+
+def _plotted(given, found, name: str, kind: str) -> bytes:
+    from ..fit.plot import plot
+
+    return plot(given, found, name, kind)
+
+
+def _plotted_parameters(found, name: str, kind: str) -> bytes:
+    from ..fit.plot import plot_of_parameters
+
+    return plot_of_parameters(found, name, kind)
+
+
+def _plot(path: Path, drawn: Callable[[str], bytes]) -> None:
     from ..files import write_whole
 
     try:
-        from ..fit.plot import plot
+        picture = drawn(path.suffix.removeprefix(".") or "png")
     except ImportError as error:
         raise HairlutError(f"--plot: {error.name} is missing: pip install 'hairlut[report]'") from None
-    write_whole(path, plot(given, found, name, path.suffix.removeprefix(".") or "png"))
+    write_whole(path, picture)
 
 
 def _checked(args: argparse.Namespace) -> str:
@@ -170,7 +223,7 @@ def _checked(args: argparse.Namespace) -> str:
         raise HairlutError(f"--name {name}: expected the name of a directory")
     for option in ("tolerance", "budget"):
         value = getattr(args, option)
-        if not (math.isfinite(value) and value > 0):
+        if value is not None and not (math.isfinite(value) and value > 0):
             raise HairlutError(f"--{option} {value}: expected a number above 0")
     if args.lobes is not None and not 1 <= args.lobes <= MAX_LOBES:
         raise HairlutError(f"--lobes {args.lobes}: expected a number from 1 to {MAX_LOBES}")

@@ -5,4 +5,9 @@ bsdf runs a user's function, read takes grids and draws from files, and hair, gr
 or cells of them. factor, highlights, turning and lobesfit find lobes, smooth and tables bake them, promise
 measures the textures, and refine does all that again with finer cells until it is good enough. summary,
 warnings and plot report.
+
+A hair with named parameters is a box of hairs. shapes finds its lobes at one corner, by the updates of tied,
+and follows them through the box; dependence says which of them a parameter changes. nodeshapes, nodetables and
+nodemixture choose each axis' nodes (nodes) and bake over them, boxpromise measures, parameters does it all,
+and boxsummary reports.
 """

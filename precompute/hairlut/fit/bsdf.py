@@ -14,6 +14,13 @@ phi_i - phi_r, in [0, 2 pi); offset is where across its width the fibre is hit, 
 its surface it reflects to phi = -2 asin(offset) (Chiang et al. 2016). Any unit of f does: only its shape
 matters.
 
+A hair with parameters names them, each with its range, and its standard value where that is not the middle:
+
+    PARAMETERS = {"beta_m": (0.05, 0.6), "absorption": (0.05, 5.0, 0.4)}
+    def bsdf(theta_r, theta_i, phi, offset, beta_m, absorption): ...
+
+bsdf gets them by name, as numbers.
+
 A sampler draws f cos(theta_i) per steradian, which is f cos(theta_i)^2 per rad^2 in (theta_i, phi).
 """
 
@@ -22,25 +29,41 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+from ..axes import Parameter, check_parameters
 from ..errors import HairlutError
 from ..lobes import Array
 from ..userfile import guarded, run_file
-from .cells import Density
 
 EXPECTED = "expected a function bsdf(theta_r, theta_i, phi) or bsdf(theta_r, theta_i, phi, offset)"
+EXPECTED_PARAMETERS = (
+    'expected PARAMETERS = {"name": (least, most), ...} with increasing numbers, and the standard value as '
+    "the third where that is not the middle"
+)
 
 
-def load(path: Path) -> tuple[Density, bool]:
-    """(density per rad^2, whether it takes an offset) of a file; HairlutError naming the file and line."""
+class Bsdf(NamedTuple):
+    """density: per rad^2, of (theta_r, theta_i, phi, offset) and the parameters by name; offsets: whether it
+    takes an offset."""
+
+    density: Callable[..., Array]
+    offsets: bool
+    parameters: tuple[Parameter, ...]
+
+
+def load(path: Path) -> Bsdf:
+    """The BSDF of a file; HairlutError naming the file and line."""
     path = Path(path)
-    function = getattr(run_file(path).module, "bsdf", None)
+    module = run_file(path).module
+    function = getattr(module, "bsdf", None)
     if not callable(function):
         raise HairlutError(f"{path}: has no bsdf: {EXPECTED}")
-    count = _arguments(path, function)
-    return _Bsdf(path, guarded(function, path), count), count == 4
+    parameters = _parameters(path, getattr(module, "PARAMETERS", {}))
+    count = _arguments(path, function, [parameter.name for parameter in parameters])
+    return Bsdf(_Bsdf(path, guarded(function, path), count), count == 4, parameters)
 
 
 class _Bsdf:
@@ -50,33 +73,77 @@ class _Bsdf:
     def __init__(self, path: Path, function: Callable, count: int):
         self._path, self._function, self._count, self._full = path, function, count, False
 
-    def __call__(self, *at: Array) -> Array:
+    def __call__(self, *at: Array, **parameters: float) -> Array:
         given = at[: self._count]
         if not self._full:
             try:
-                return _density(self._path, self._function, given, at)
+                return _density(self._path, self._function, given, at, parameters)
             except HairlutError as error:
                 first = error
         full = tuple(np.array(x) for x in np.broadcast_arrays(*given))
         try:
-            values = _density(self._path, self._function, full, at)
+            values = _density(self._path, self._function, full, at, parameters)
         except HairlutError as error:
             raise error if self._full else first from None
         self._full = True
         return values
 
 
-def _arguments(path: Path, function: Callable) -> int:
-    parameters = inspect.signature(function).parameters.values()
-    needed = [p for p in parameters if p.default is p.empty and p.kind is not p.VAR_POSITIONAL]
-    if len(needed) not in (3, 4) or any(p.kind is p.KEYWORD_ONLY for p in needed):
-        raise HairlutError(f"{path}: bsdf{inspect.signature(function)}: {EXPECTED}")
+def _parameters(path: Path, given: object) -> tuple[Parameter, ...]:
+    """The parameters that a file names; HairlutError saying which of them is wrong."""
+    if not isinstance(given, dict):
+        raise HairlutError(f"{path}: PARAMETERS is of type {type(given).__name__}: {EXPECTED_PARAMETERS}")
+    found = []
+    for name, values in given.items():
+        try:
+            numbers = [float(x) for x in values]
+        except (TypeError, ValueError):
+            numbers = []
+        if not isinstance(name, str) or len(numbers) not in (2, 3):
+            raise HairlutError(f"{path}: PARAMETERS has {name!r}: {values!r}: {EXPECTED_PARAMETERS}")
+        least, most, *standard = numbers
+        try:
+            found.append(Parameter(name, least, most, *(standard or [(least + most) / 2])))
+        except HairlutError as error:
+            raise HairlutError(f"{path}: PARAMETERS: {error}") from None
+    try:
+        check_parameters(found)
+    except HairlutError as error:
+        raise HairlutError(f"{path}: PARAMETERS: {error}") from None
+    return tuple(found)
+
+
+def _arguments(path: Path, function: Callable, names: list[str]) -> int:
+    """How many arguments a function takes before its parameters: 3, or 4 with an offset."""
+    signature = inspect.signature(function)
+    arguments = signature.parameters.values()
+    by_name = [a.name for a in arguments if a.kind in (a.POSITIONAL_OR_KEYWORD, a.KEYWORD_ONLY)]
+    if not any(a.kind is a.VAR_KEYWORD for a in arguments):
+        for name in names:
+            if name not in by_name:
+                raise HairlutError(f"{path}: bsdf{signature} takes no {name}, which PARAMETERS names")
+    needed = [
+        a
+        for a in arguments
+        if a.default is a.empty and a.kind not in (a.VAR_POSITIONAL, a.VAR_KEYWORD) and a.name not in names
+    ]
+    extra = [a.name for a in needed[4:]] or [a.name for a in needed if a.kind is a.KEYWORD_ONLY]
+    if names and extra:
+        raise HairlutError(f"{path}: bsdf{signature} takes {extra[0]}, which PARAMETERS does not name")
+    if len(needed) not in (3, 4) or extra:
+        raise HairlutError(f"{path}: bsdf{signature}: {EXPECTED}{', then its parameters' * bool(names)}")
     return len(needed)
 
 
-def _density(path: Path, function: Callable, given: tuple[Array, ...], at: tuple[Array, ...]) -> Array:
+def _density(
+    path: Path,
+    function: Callable,
+    given: tuple[Array, ...],
+    at: tuple[Array, ...],
+    parameters: dict[str, float],
+) -> Array:
     """f cos(theta_i)^2, checked."""
-    values = np.asarray(function(*given))
+    values = np.asarray(function(*given, **parameters))
     shape = np.broadcast_shapes(*(np.shape(x) for x in given))
     if values.dtype.kind not in "fiub":
         raise HairlutError(f"{path}: bsdf returned {values.dtype}: expected real numbers")
@@ -93,6 +160,7 @@ def _density(path: Path, function: Callable, given: tuple[Array, ...], at: tuple
         point = ", ".join(
             f"{name} = {np.broadcast_to(x, shape)[index]:.9g}" for name, x in zip(names, given, strict=False)
         )
+        point += "".join(f", {name} = {value:.9g}" for name, value in parameters.items())
         raise HairlutError(
             f"{path}: bsdf is {values[index]:.6g} at {point}: expected a finite number, 0 or more"
         )

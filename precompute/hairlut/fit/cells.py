@@ -100,3 +100,13 @@ def phi_count(density: Density, theta_r: Array, offset: Array) -> int:
             if strength[0] > 0:
                 highest = max(highest, int(np.flatnonzero(strength > CUTOFF * strength[0])[-1]))
     return int(np.clip(8 * np.ceil(2.1 * highest / 8), MIN_PHI, MAX_PHI))
+
+
+def rebinned(mass: Array, old: Array, new: Array, moved: float = 0.0) -> Array:
+    """(n', K) masses of sum 1 between the edges new (n'+1,) of those (n, K) between old (n+1,): their density
+    at new's middles plus an angle."""
+    middles = (new[1:] + new[:-1]) / 2 + moved
+    density = mass / np.diff(old)[:, None]
+    at = np.stack([np.interp(middles, (old[1:] + old[:-1]) / 2, one) for one in density.T], axis=1)
+    at = ((at + 1e-30) * np.diff(new)[:, None]).astype(mass.dtype)
+    return at / at.sum(axis=0)

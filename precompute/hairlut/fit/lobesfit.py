@@ -111,7 +111,7 @@ def _split(row: Row, mass: Array) -> Row:
     phi = np.concatenate([row.phi, shapes[:, 1][None]])
     phi[k] = shapes[:, 0]
     theta = np.concatenate([row.theta, row.theta[:, [k]]], axis=1)
-    return Row(theta, _even(phi), share, np.concatenate([row.turn, row.turn[:, [k]]], axis=1))
+    return Row(theta, evened(phi), share, np.concatenate([row.turn, row.turn[:, [k]]], axis=1))
 
 
 def _of_highlights(found: list[Highlight]) -> Row:
@@ -161,7 +161,7 @@ def improved(
     light = mass.sum(axis=(0, 2))[:, None] / len(mass)
     for sweep in range(sweeps):
         if turning and sweep % 2:
-            row = replace(row, turn=_step(row, mass, angle, expected))
+            row = replace(row, turn=stepped(row, mass, angle, expected))
         at = row.turned()
         azimuths = row.share[..., None] * at
         e = excess(mass, np.matmul(row.theta, azimuths))
@@ -173,7 +173,7 @@ def improved(
             theta = filled(row.theta * theta ** (1 / POWER), light)
             back = turned(gain, -row.turn) if row.turn.any() else gain  # turning back is turning's adjoint
             phi = (row.share[..., None] * back).sum(axis=0) / row.share.sum(axis=0)[:, None]
-            phi = _even(row.phi * np.maximum(phi, 0) ** (1 / POWER))
+            phi = evened(row.phi * np.maximum(phi, 0) ** (1 / POWER))
             if expected is not None:
                 known = (1 - PULL) * row.share.mean(axis=0) / (row.share.mean(axis=0) + FAINT)
                 theta = known * theta + (1 - known) * expected.theta
@@ -183,7 +183,7 @@ def improved(
     return row
 
 
-def _step(row: Row, mass: Array, angle: Array, expected: Row | None) -> Array:
+def stepped(row: Row, mass: Array, angle: Array, expected: Row | None) -> Array:
     """(N, K) turns after a Gauss-Newton step towards the least sum of (p - q)^2 / q. A turn that moves little
     light is held by its neighbours: along the offsets it bends little, and it is near the expected one."""
     cell = TWO_PI / row.phi.shape[1]
@@ -245,7 +245,7 @@ def _laid(theta: Array, light: Array, each: Array, turn: Array) -> Row:
     """The row whose azimuths are the means of each, laid upon each other."""
     back = turned(each, -turn) if turn.any() else each
     return Row(
-        theta, _even((light[..., None] * back).sum(axis=0)), light / light.sum(axis=1, keepdims=True), turn
+        theta, evened((light[..., None] * back).sum(axis=0)), light / light.sum(axis=1, keepdims=True), turn
     )
 
 
@@ -257,6 +257,6 @@ def _strongest(light: Array, each: Array) -> Array:
     return turned(found, np.pi - np.angle(found @ np.exp(1j * middles)))
 
 
-def _even(phi: Array) -> Array:
+def evened(phi: Array) -> Array:
     """phi (K, m) of sum 1, a little of each even."""
     return (1 - FILL) * phi / np.maximum(phi.sum(axis=1, keepdims=True), TINY) + FILL / phi.shape[1]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A picture of a fit: the hair and its textures, their cost over the viewers, and where weights are large."""
+"""A picture of a fit: the hair and its textures, their cost over the viewers, and where weights are large; of
+one with parameters, the cost over each."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ from .. import figures
 from ..lobes import HALF_PI, Array
 from . import promise
 from .hair import Hair
+from .parameters import FittedBox
 from .refine import Fitted
 from .turning import TWO_PI
 
@@ -79,3 +81,18 @@ def _weights(ax, theta_i: Array, phi: Array, p: Array, q: Array) -> None:
     )
     ax.set(xlabel="phi [deg]", ylabel="theta_i [deg]", title=f"log10 of the weight, {VIEWERS[-1]:.0f} deg")
     ax.figure.colorbar(image, ax=ax)
+
+
+def plot_of_parameters(found: FittedBox, title: str, kind: str = "png") -> bytes:
+    """V and the largest weight of each measured place, over each parameter and theta_r."""
+    measured = found.measured
+    columns = [(p.name, measured.parameters[:, i]) for i, p in enumerate(found.box.parameters)]
+    columns.append(("theta_r [deg]", np.degrees(measured.theta_r)))
+    figure, axes = figures.new(1, len(columns), size=(4 * len(columns), 4), squeeze=False)
+    for ax, (name, x) in zip(axes[0], columns, strict=True):
+        ax.semilogy(x, measured.variance.mean(axis=1), ".", color=figures.BLUE)
+        ax.semilogy(x, measured.weight.max(axis=1), ".", color=figures.RED)
+        ax.set(xlabel=name)
+    axes[0, 0].set_title("variance (blue), largest weight (red)")
+    figure.suptitle(f"{title}: relative variance {measured.variance.mean():.4f}")
+    return figures.encoded(figure, kind)

@@ -234,12 +234,9 @@ def _expected(data: Cells, rows: dict[int, Row], j: int, before: int) -> Row:
     last, second = rows[before], rows.get(2 * before - j)
     moved = data.theta_r[j] - data.theta_r[before]
     old, new = data.theta_edges[before], data.theta_edges[j]
-    middles = (new[1:] + new[:-1]) / 2 + moved
-    density = last.theta / np.diff(old)[:, None]
-    theta = np.stack([np.interp(middles, (old[1:] + old[:-1]) / 2, one) for one in density.T], axis=1)
-    theta = ((theta + 1e-30) * np.diff(new)[:, None]).astype(last.theta.dtype)
+    theta = cells.rebinned(last.theta, old, new, moved)
     went = 0.0 if second is None else np.clip(last.turn - second.turn, -FARTHEST, FARTHEST)
-    return replace(last, theta=theta / theta.sum(axis=0), turn=last.turn + went)
+    return replace(last, theta=theta, turn=last.turn + went)
 
 
 def _at_all(row: Row, mass: Array, some: Array, angle: Array, turning: bool) -> Row:
@@ -259,7 +256,7 @@ def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -
     around = np.tile(np.linspace(0, TWO_PI, rows[0].phi.shape[1] + 1), (len(rows), 1))
     share = np.stack([row.share for row in rows]).transpose(2, 0, 1)
     turn = wrap(np.stack([row.turn for row in rows]).transpose(2, 0, 1))
-    bright = _bright(data.theta_edges, rows)
+    bright = bright_parts(data.theta_edges, rows)
     for k in range(len(share)):
         lobe, need = f"lobe{k}", tables.Need(share[k].mean(axis=1), bright[k], loss)
         inclinations, azimuths = (
@@ -276,7 +273,7 @@ def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -
     return BakedModel(name, tuple(lobes), mixture)
 
 
-def _bright(theta_edges: Array, rows: list[Row]) -> Array:
+def bright_parts(theta_edges: Array, rows: list[Row]) -> Array:
     """(K, J) part of a lobe's own peak of f cos(theta_i) that is BRIGHT of the brightest lobe's."""
     size = np.diff(theta_edges) * np.cos((theta_edges[:, 1:] + theta_edges[:, :-1]) / 2)
     peak = [

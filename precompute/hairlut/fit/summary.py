@@ -84,8 +84,8 @@ def text(found: Fitted, tolerance: float) -> str:
     errors, axes = promise(found), found.axes
     offsets = f", {axes.offset} offsets" if axes.offset > 1 else ""
     lines = [
-        f"{_lobes(len(found.model.lobes))} from {axes.theta_r} theta_r{offsets}, {axes.theta_i} x {axes.phi} "
-        "cells of theta_i and phi",
+        f"{lobes_text(len(found.model.lobes))} from {axes.theta_r} theta_r{offsets}, {axes.theta_i} x "
+        f"{axes.phi} cells of theta_i and phi",
         "",
         "relative variance of drawing this hair, the offset known (0 is perfect, 1 costs twice the samples),",
         "measured in the baked textures at random viewers, offsets and directions; weights where f is above",
@@ -103,14 +103,14 @@ def text(found: Fitted, tolerance: float) -> str:
     return "\n".join([*lines, _verdict(found, tolerance)])
 
 
-def _lobes(count: int) -> str:
+def lobes_text(count: int) -> str:
     return f"{count} lobe{'s' if count > 1 else ''}"
 
 
 def _verdict(found: Fitted, tolerance: float) -> str:
     what = limits(found, tolerance)
     if not what:
-        best = _lobes(len(found.model.lobes))
+        best = lobes_text(len(found.model.lobes))
         return f"meets the tolerance: within {tolerance:g} of what {best} can reach"
     return f"stops short of the tolerance {tolerance:g}; what limits it: {', '.join(what)}"
 
@@ -129,7 +129,7 @@ def drawn_text(path: Path, data: Draws, found: Drawn) -> str:
     return "\n".join(
         [
             f"{path}: {data}",
-            f"{_lobes(len(found.model.lobes))}: one more gains nothing beyond the noise of the draws",
+            f"{lobes_text(len(found.model.lobes))}: one more gains nothing beyond the noise of the draws",
             "",
             "relative variance of drawing this hair (0 is perfect, 1 costs twice the samples), measured on",
             "draws left out",

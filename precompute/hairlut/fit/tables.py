@@ -43,8 +43,8 @@ def smallest(name: str, model: str, exact: SmoothRows, need: Need) -> Table:
     best = _widest_enough(name, model, exact, replace(need, loss=need.loss * FROM_WIDTH))
     last = len(exact.theta_r) - 1
     for step in (s for s in range(last, 1, -1) if last % s == 0):
-        table = _table(name, model, exact, best.width, best.warp, step)
-        if table and _lost(table, exact, need) <= 1:
+        table = table_of(name, model, exact, best.width, best.warp, step)
+        if table and part_lost(table, exact, need) <= 1:
             return table
     return best
 
@@ -53,10 +53,10 @@ def _widest_enough(name: str, model: str, exact: SmoothRows, need: Need) -> Tabl
     best: tuple[float, Table] | None = None
     for width in WIDTHS:
         for exponent in EXPONENTS:
-            table = _table(name, model, exact, width, Warp("octaves", 2.0**exponent), 1)
+            table = table_of(name, model, exact, width, Warp("octaves", 2.0**exponent), 1)
             if not table:
                 continue
-            lost = _lost(table, exact, need)
+            lost = part_lost(table, exact, need)
             if best is None or lost < best[0]:
                 best = lost, table
         if best and best[0] <= 1:
@@ -66,7 +66,7 @@ def _widest_enough(name: str, model: str, exact: SmoothRows, need: Need) -> Tabl
     return best[1]
 
 
-def _lost(table: Table, exact: SmoothRows, need: Need) -> float:
+def part_lost(table: Table, exact: SmoothRows, need: Need) -> float:
     """The worst row's variance or largest weight, as a part of what is allowed."""
     read = interpolant.cells(table, exact.theta_r)
     x, slope = read.angle(NODES), read.slope(NODES)
@@ -79,7 +79,7 @@ def _lost(table: Table, exact: SmoothRows, need: Need) -> float:
     return float(max((variance * need.importance).max() / need.loss, heaviest / HEAVIEST))
 
 
-def _table(name: str, model: str, exact: SmoothRows, width: int, warp: Warp, step: int) -> Table | None:
+def table_of(name: str, model: str, exact: SmoothRows, width: int, warp: Warp, step: int) -> Table | None:
     try:
         return tabulate(_lobe(name, model, exact), exact, width, warp, slice(None, None, step))
     except HairlutError:  # some cell is flat

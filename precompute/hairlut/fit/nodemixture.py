@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shares and turns of lobes whose shapes are known, over the parameters, theta_r and the offset.
+
+They are fitted to the hair with what the baked tables draw, at candidates of nodes. Of these each axis keeps
+the fewest from which the rest is blended well enough, measured by a bound of V: for shares s_k blended as q_k
+and turns that are off by d_k,
+
+    V <= sum over k of (s_k - q_k)^2 / q_k + q_k d_k^2 I_k,   I_k = integral of B_k'^2 / B_k dphi,
+
+by the convexity of (p - q)^2 / q, and to second order in d_k."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from ..axes import Axis
+from ..lobes import Array
+from ..mixture import Mixture, wrap
+from ..model import BakedLobe
+from . import cells, nodes, nodetables
+from .box import Box, Place, with_value
+from .lobesfit import Row, same_shapes
+from .shapes import Shapes
+from .turning import TWO_PI
+
+STEPS = 9  # values of a parameter that are candidates
+CELLS = 32
+FEW_OFFSETS = 13  # by which dependences are found
+VIEWERS = np.array([-0.96, -0.7, -0.35, 0.0, 0.35, 0.7, 0.96])  # parts of the largest theta_r
+GRAZING = np.array([5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 5.0])
+"""How many times as much may be lost there: few viewers are grazing."""
+
+
+@dataclass(frozen=True)
+class Lit:
+    """Shares and turns (J, N, K) at one place; variance (J,): V, the mean over the offsets."""
+
+    share: Array
+    turn: Array
+    variance: Array
+
+
+class Fitting:
+    """Fits shares and turns at places, for theta_r (J,) and the angles (N,) of offsets."""
+
+    def __init__(self, box: Box, lobes: list[BakedLobe], theta_r: Array, angle: Array, turning: bool):
+        self._box, self._lobes, self._theta_r, self._angle = box, lobes, theta_r, angle
+        self._turning = turning
+
+    def at(self, place: Place, start: Lit, fixed: bool = False) -> Lit:
+        """The shares and turns at a place, from those of a place beside; fixed: V with just these."""
+        box, offset = self._box, np.sin(self._angle)
+        density, named = box.density_at(place), box.named(place)
+        some = offset[np.unique([0, len(offset) // 2, max(len(offset) - 2, 0)])]
+        edges = cells.theta_edges(density, self._theta_r, some, CELLS)
+        viewers = self._theta_r[np.unique([0, len(self._theta_r) // 2, len(self._theta_r) - 1])]
+        m = cells.phi_count(density, viewers, offset[:-1][::6])
+        lobes = [BakedLobe(x.name, x.theta.at(named), x.phi and x.phi.at(named)) for x in self._lobes]
+        rows = []
+        variance = []
+        for j, theta_r in enumerate(self._theta_r):
+            mass = cells.of_density(density, self._theta_r[[j]], offset, edges[[j]], m).mass[0]
+            parts = [nodetables.masses(x, theta_r, edges[j], m) for x in lobes]
+            theta, phi = np.stack([a for a, _ in parts], axis=1), np.stack([b for _, b in parts])
+            row = Row(theta, phi, start.share[j], start.turn[j])
+            if not fixed:
+                row = same_shapes(row, mass, self._angle, self._turning)
+            rows.append(row)
+            variance.append(row.variance(mass))
+        return Lit(
+            np.stack([row.share for row in rows]), np.stack([row.turn for row in rows]), np.array(variance)
+        )
+
+
+def of_shapes(found: Shapes, theta_r: Array, angle: Array) -> Lit:
+    """The shares and turns of the shapes' first place at other theta_r and offsets."""
+    rows = found.rows[: len(found.theta_r)]
+    parts = []
+    for values in (np.stack([r.share for r in rows]), np.unwrap(np.stack([r.turn for r in rows]), axis=0)):
+        parts.append(_along(found.theta_r, _along(found.angle, values, angle, 1), theta_r, 0))
+    return Lit(*parts, np.zeros(len(theta_r)))
+
+
+def _along(nodes_at: Array, values: Array, at: Array, axis: int) -> Array:
+    """Values on an axis of nodes, blended at other places."""
+    x = np.interp(at, nodes_at, np.arange(len(nodes_at)))
+    i = np.clip(x.astype(int), 0, max(len(nodes_at) - 2, 0))
+    t = np.expand_dims(x - i, tuple(range(1, values.ndim - axis)))
+    after = np.minimum(i + 1, len(nodes_at) - 1)
+    return (1 - t) * np.take(values, i, axis) + t * np.take(values, after, axis)
+
+
+def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tuple[int, ...]:
+    """The parameters on which shares or turns depend, along each from the anchor."""
+    anchor = start.places[0]
+    low, high = box.hair.theta_r
+    theta_r = (low + high) / 2 + VIEWERS * (high - low) / 2
+    angle = box.hair.angles(FEW_OFFSETS)
+    fitting = Fitting(box, lobes, theta_r, angle, start.turning)
+    first = fitting.at(anchor, of_shapes(start, theta_r, angle))
+    found = []
+    for p in range(len(box.parameters)):
+        values = box.steps(p, 5)
+        here = first
+        for value in values if values[0] == anchor[p] else values[::-1]:
+            place = with_value(anchor, p, value)
+            here = fitting.at(place, here)
+            same = fitting.at(place, first, fixed=True)
+            if ((same.variance - here.variance) / GRAZING).max() > slack:
+                found.append(p)
+                break
+    return tuple(found)
+
+
+def mixture(
+    box: Box,
+    lobes: list[BakedLobe],
+    start: Shapes,
+    axes: tuple[int, ...],
+    theta_r: Array,
+    angle: Array,
+    allowed: Mapping[str, float],
+    report: Callable[[float], None],
+) -> Mixture:
+    """The mixture of baked lobes over the parameters axes."""
+    anchor = start.places[0]
+    fitting = Fitting(box, lobes, theta_r, angle, start.turning)
+    first = fitting.at(anchor, of_shapes(start, theta_r, angle))
+    bend, kept = _bends(lobes), {}
+    for number, p in enumerate(axes):
+        report(0.5 * number / max(len(axes), 1))
+        kept[p] = _nodes_along(box, fitting, first, anchor, p, bend, allowed[box.parameters[p].name])
+    done: dict[tuple[int, ...], Lit] = {} if axes else {(): first}
+    order = sorted(product(*(range(len(kept[p][0])) for p in axes)), key=sum)
+    for number, index in enumerate(order if axes else []):
+        report(0.5 + 0.5 * number / len(order))
+        done[index] = _at_index(fitting, done, index, axes, kept, anchor)
+    values = [kept[p][0] for p in axes]
+    return _assembled(box, lobes, axes, values, done, theta_r, angle, allowed)
+
+
+def _at_index(
+    fitting: Fitting,
+    done: dict[tuple[int, ...], Lit],
+    index: tuple[int, ...],
+    axes: tuple[int, ...],
+    kept: dict[int, tuple[Array, list[Lit]]],
+    anchor: Place,
+) -> Lit:
+    """The shares and turns at the product's node index, from those of the node before it."""
+    used = [a for a, i in enumerate(index) if i]
+    axis = used[-1] if used else 0
+    if len(used) <= 1:
+        return kept[axes[axis]][1][index[axis]]
+    before = done[(*index[:axis], index[axis] - 1, *index[axis + 1 :])]
+    place = anchor
+    for p, i in zip(axes, index, strict=True):
+        place = with_value(place, p, kept[p][0][i])
+    return fitting.at(place, before)
+
+
+def _nodes_along(
+    box: Box, fitting: Fitting, first: Lit, anchor: Place, p: int, bend: Array, allowed: float
+) -> tuple[Array, list[Lit]]:
+    """The nodes of one parameter, from the anchor's end on, and what is there."""
+    values = box.steps(p, STEPS)
+    values = values if values[0] == anchor[p] else values[::-1]
+    along = [first]
+    for value in values[1:]:
+        along.append(fitting.at(with_value(anchor, p, value), along[-1]))
+    return nodes.chosen(
+        values,
+        along,
+        lambda values, along: _Loss(values, along, bend),
+        lambda one, value: fitting.at(with_value(anchor, p, value), one),
+        allowed,
+    )
+
+
+class _Loss:
+    """loss(i, j): the bound of V between two values of a parameter, the mean over the offsets, the largest
+    over theta_r."""
+
+    def __init__(self, values: Array, along: list[Lit], bend: Array):
+        self._values, self._along, self._bend = values, along, bend
+
+    def __call__(self, i: int, j: int) -> float:
+        low, high, worst = self._along[i], self._along[j], 0.0
+        for c in range(i + 1, j):
+            t = (self._values[c] - self._values[i]) / (self._values[j] - self._values[i])
+            here = self._along[c]
+            worst = max(worst, float(_bound(low, high, t, here, self._bend).mean(axis=1).max()))
+        return worst
+
+
+def _bound(low: Lit, high: Lit, t: Array | float, here: Lit, bend: Array) -> Array:
+    share = (1 - t) * low.share + t * high.share
+    turn = low.turn + t * wrap(high.turn - low.turn)
+    return bound(here.share, here.turn, share, turn, bend)
+
+
+def bound(share: Array, turn: Array, drawn: Array, drawn_turn: Array, bend: Array) -> Array:
+    """(...) the bound of V of shares and turns (..., K) that are drawn with others; bend (K,): I_k."""
+    off = wrap(turn - drawn_turn)
+    chi = (share - drawn) ** 2 / np.maximum(drawn, 1e-9)
+    return (chi + np.minimum(share, drawn) * np.minimum(off**2 * bend, 4.0)).sum(axis=-1)
+
+
+def _bends(lobes: list[BakedLobe]) -> Array:
+    """(K,) the largest integral of B'^2 / B of each lobe's azimuths over their nodes."""
+    return np.array([0.0 if lobe.phi is None else _bend_of(lobe.phi) for lobe in lobes])
+
+
+def _bend_of(table) -> float:
+    m = 512
+    edges = np.linspace(0, TWO_PI, m + 1)
+    worst = 0.0
+    names = [axis.name for axis in table.axes]
+    for values in product(*([axis.nodes[0], axis.nodes[-1]] for axis in table.axes)):
+        fixed = table.at(dict(zip(names, values, strict=True)))
+        mass = nodetables._cells(fixed, 0.0, edges) * m / TWO_PI
+        slope = (np.roll(mass, -1) - np.roll(mass, 1)) / (2 * TWO_PI / m)
+        worst = max(worst, float((slope**2 / mass).sum() * TWO_PI / m))
+    return worst
+
+
+def _assembled(
+    box: Box,
+    lobes: list[BakedLobe],
+    axes: tuple[int, ...],
+    values: list[Array],
+    done: dict[tuple[int, ...], Lit],
+    theta_r: Array,
+    angle: Array,
+    allowed: Mapping[str, float],
+) -> Mixture:
+    """The mixture with as few theta_r and offsets as lose little."""
+    shape, bend = tuple(len(v) for v in values), _bends(lobes)
+    share = np.stack([done[index].share for index in np.ndindex(shape)])  # (nodes, J, N, K)
+    turn = np.stack([done[index].turn for index in np.ndindex(shape)])
+    offsets = _fewest(share, turn, 2, angle, bend, allowed["offset"])
+    share, turn, angle = share[:, :, offsets], turn[:, :, offsets], angle[offsets]
+    viewers = _fewest(share, turn, 1, theta_r, bend, allowed["theta_r"])
+    share, turn, theta_r = share[:, viewers], turn[:, viewers], theta_r[viewers]
+    share, turn = (np.moveaxis(part.reshape(*shape, *part.shape[1:]), -1, 0) for part in (share, turn))
+    backward = tuple(a + 1 for a, v in enumerate(values) if v[0] > v[-1])  # the anchor comes first
+    named = tuple(Axis(box.parameters[p].name, np.sort(v)) for p, v in zip(axes, values, strict=True))
+    return Mixture(
+        tuple(one.name for one in lobes),
+        theta_r,
+        np.sin(angle),
+        np.flip(share, backward),
+        wrap(np.flip(turn, backward)),
+        box.hair.mirrored,
+        named,
+    )
+
+
+def _fewest(share: Array, turn: Array, axis: int, places: Array, bend: Array, allowed: float) -> list[int]:
+    """The fewest of an axis' places from which the others are blended well enough: on average over the
+    offsets, at the worst theta_r and node."""
+    if len(places) < 3:
+        return list(range(len(places)))
+    share, turn = np.moveaxis(share, axis, 0), np.moveaxis(turn, axis, 0)
+
+    def loss(i: int, j: int) -> float:
+        t = ((places[i + 1 : j] - places[i]) / (places[j] - places[i]))[:, None, None, None]
+        drawn = (1 - t) * share[i] + t * share[j]
+        drawn_turn = turn[i] + t * wrap(turn[j] - turn[i])
+        lost = bound(share[i + 1 : j], turn[i + 1 : j], drawn, drawn_turn, bend)
+        return float(lost.sum(axis=0).max() / len(places) if axis == 2 else lost.mean(axis=2).max())
+
+    return nodes.fewest(len(places), loss, allowed)

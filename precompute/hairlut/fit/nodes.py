@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The fewest nodes of an axis between which what lies there is blended well enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+
+from ..lobes import Array
+
+T = TypeVar("T")
+Loss = Callable[[int, int], float]
+TOO_FAR = (
+    8.0  # times what is allowed: a loss that falls with the fourth power of the distance then is, halved
+)
+MOST = 24  # values of an axis that are tried
+
+
+def fewest(count: int, loss: Loss, allowed: float) -> list[int]:
+    """Numbers of nodes, first and last among them, of `count` candidates in order: the fewest such that the
+    loss between any two neighbours is allowed, or is that of candidates with none between; of as many, those
+    whose largest loss is least. loss(i, j): the largest loss of the candidates between i and j, blended."""
+    best: list[tuple[int, float, int]] = [(0, 0.0, -1)]  # by candidate: nodes before it, their loss, the last
+    for j in range(1, count):
+        options = []
+        for i in range(j - 1, -1, -1):
+            lost = loss(i, j) if j > i + 1 else 0.0
+            if lost > 4 * allowed:
+                break
+            if lost <= allowed:
+                options.append((best[i][0] + 1, max(best[i][1], lost), i))
+        best.append(min(options))
+    chosen = [count - 1]
+    while chosen[-1]:
+        chosen.append(best[chosen[-1]][2])
+    return chosen[::-1]
+
+
+def chosen(
+    values: Array,
+    along: list[T],
+    loss_of: Callable[[Array, list[T]], Loss],
+    beside: Callable[[T, float], T],
+    allowed: float,
+) -> tuple[Array, list[T]]:
+    """The fewest of an axis' values that are needed, and what is there. values (n,), in either order, and
+    what was found at each; loss_of: of such, the loss of fewest; beside(one, value): what is found at a value
+    from one beside it. Where a value left out loses far too much, values between are tried too."""
+    values, along = list(values), list(along)
+    while True:
+        loss = loss_of(np.array(values), along)
+        wide = [i for i in range(1, len(values) - 1) if loss(i - 1, i + 1) > TOO_FAR * allowed]
+        gaps = sorted({gap for i in wide for gap in (i - 1, i)}, reverse=True)
+        if not gaps or len(values) + len(gaps) > MOST:
+            break
+        for gap in gaps:
+            value = (values[gap] + values[gap + 1]) / 2
+            along.insert(gap + 1, beside(along[gap], value))
+            values.insert(gap + 1, value)
+    kept = fewest(len(values), loss, allowed)
+    return np.array([values[i] for i in kept]), [along[i] for i in kept]

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The shapes of a hair's lobes at the nodes of the parameters on which they depend.
+
+The nodes of a parameter are the fewest between which quantiles are blended well enough: as few as a scale
+that changes by a few powers needs. Shapes are followed from node to node, from the anchor outwards."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from .. import interpolant
+from ..lobes import Array
+from ..table import exact_knots
+from ..warp import Warp
+from . import nodes, shapes, smooth, tables
+from .box import Box, Place, with_value
+from .dependence import Dependence
+from .shapes import BOTH, THETA, Shapes
+from .turning import TWO_PI
+
+WIDTH, WARP = 64, Warp("octaves", 2.0**-11)  # of the tables by which nodes are chosen
+ENOUGH_JOINED = 3  # places by which the shapes of all rows are fitted
+
+
+@dataclass(frozen=True)
+class NodeShapes:
+    """Shapes at the nodes of some parameters. axes: their numbers; nodes: the values of each, increasing;
+    at: by the numbers of nodes."""
+
+    axes: tuple[int, ...]
+    nodes: tuple[Array, ...]
+    at: dict[tuple[int, ...], Shapes]
+
+
+def exact_theta(found: Shapes, lobe: int) -> smooth.SmoothRows:
+    """The inclinations of a lobe as smooth rows."""
+    return smooth.rows(found.theta_r, found.edges, found.theta[:, :, lobe], False)
+
+
+def exact_phi(found: Shapes, lobe: int, theta_r: Array) -> smooth.SmoothRows:
+    """The azimuths of a lobe; one that all theta_r have in common as two rows, at the ends of theta_r."""
+    phi = found.phi[:, lobe]
+    if found.tied:
+        theta_r, phi = theta_r[[0, -1]], phi[[0, 0]]
+    edges = np.tile(np.linspace(0, TWO_PI, phi.shape[1] + 1), (len(phi), 1))
+    return smooth.rows(theta_r, edges, phi, True)
+
+
+def chosen(
+    box: Box, found: Dependence, allowed: Mapping[str, float], report: Callable[[float], None]
+) -> dict[int, tuple[Array, list[Shapes]]]:
+    """The nodes of each parameter on which shapes depend, with the shapes there. allowed: V that blending
+    between the nodes of a parameter may cost."""
+    result = {}
+    for number, (p, (values, along)) in enumerate(found.along.items()):
+        report(number / len(found.along))
+        moving = p in found.theta, p in found.phi
+
+        def beside(one: Shapes, value: float, p=p, moving=moving) -> Shapes:
+            places = tuple(with_value(place, p, value) for place in one.places)
+            return shapes.followed(box, one, places, moving)
+
+        def loss_of(values: Array, along: list[Shapes], moving=moving) -> nodes.Loss:
+            return _Blending(values, along, moving)
+
+        result[p] = nodes.chosen(values, along, loss_of, beside, allowed[box.parameters[p].name])
+    return result
+
+
+class _Blending:
+    """loss(i, j): V of what lies between two values, blended of the shapes at these, times the lobe's
+    share; the largest of all lobes and theta_r."""
+
+    def __init__(self, values: Array, along: list[Shapes], moving: tuple[bool, bool]):
+        self._values, self._known = values, {}
+        lobes = range(along[0].rows[0].phi.shape[0])
+        self._exact = [_exact(one, k, moving) for one in along for k in lobes]
+        self._knots = [[exact_knots(e, WIDTH, WARP) for e in part] for part in self._exact]
+        self._light = [np.broadcast_to(one.light[:, k], len(one.theta_r)) for one in along for k in lobes]
+        self._lobes = len(lobes)
+
+    def __call__(self, i: int, j: int) -> float:
+        if (i, j) not in self._known:
+            self._known[i, j] = max(
+                (self._at(i, j, c, k) for c in range(i + 1, j) for k in range(self._lobes)), default=0.0
+            )
+        return self._known[i, j]
+
+    def _at(self, i: int, j: int, c: int, k: int) -> float:
+        t = (self._values[c] - self._values[i]) / (self._values[j] - self._values[i])
+        low, high, here = (self._knots[n * self._lobes + k] for n in (i, j, c))
+        light = self._light[c * self._lobes + k]
+        lost = 0.0
+        for a, b, own, exact in zip(low, high, here, self._exact[c * self._lobes + k], strict=True):
+            blend = [(1 - t) * x + t * y for x, y in zip(a, b, strict=True)]
+            v = _variance(exact, *blend) - _variance(exact, *own)  # the width's loss is not the nodes'
+            lost += float((v * (light if len(v) == len(light) else light.max())).max())
+        return lost
+
+
+def _exact(found: Shapes, lobe: int, moving: tuple[bool, bool]) -> list[smooth.SmoothRows]:
+    kinds = [exact_theta(found, lobe)] if moving[0] else []
+    return kinds + ([exact_phi(found, lobe, found.theta_r)] if moving[1] else [])
+
+
+def _variance(exact: smooth.SmoothRows, x: Array, slopes: Array) -> Array:
+    """(R,) V of tables with these knots."""
+    read = interpolant.Cells(WARP.widths(WIDTH), x, slopes)
+    weight = exact.density(read.angle(tables.NODES), np.arange(len(x))[:, None, None])
+    weight = weight * read.slope(tables.NODES)
+    return (((weight - 1) ** 2 @ tables.WEIGHTS) * read.h).sum(axis=1)
+
+
+def at_nodes(
+    box: Box,
+    full: Shapes,
+    found: Dependence,
+    along: dict[int, tuple[Array, list[Shapes]]],
+    report: Callable[[float], None],
+) -> tuple[Shapes, NodeShapes, NodeShapes]:
+    """(shapes of all theta_r at the anchor, inclinations and azimuths at all nodes). full: the anchor's own
+    shapes of all theta_r."""
+    tied = found.base.tied
+    start = full
+    if tied:
+        rows = [replace(row, phi=found.base.rows[0].phi) for row in full.rows]
+        start = replace(full, rows=rows, blocks=[replace(b, phi=0) for b in full.blocks], tied=True)
+    start = shapes.joined(box, start, _some(found.places), THETA if tied else BOTH)
+    theta = _grid(box, start, found, found.theta, along, lambda share: report(share * 0.8))
+    if not set(found.phi) <= set(found.theta):
+        first = found.base if tied else start
+        phi = _grid(box, first, found, found.phi, along, lambda share: report(0.8 + share * 0.2))
+    else:
+        phi = _part(theta, found.phi, found.places[0])
+    return start, theta, phi
+
+
+def _some(places: tuple[Place, ...]) -> tuple[Place, ...]:
+    numbers = np.unique(np.linspace(0, len(places) - 1, min(ENOUGH_JOINED, len(places))).round().astype(int))
+    return tuple(places[i] for i in numbers)
+
+
+def _grid(
+    box: Box,
+    start: Shapes,
+    found: Dependence,
+    axes: tuple[int, ...],
+    along: dict[int, tuple[Array, list[Shapes]]],
+    report: Callable[[float], None],
+) -> NodeShapes:
+    """The shapes at the product of the axes' nodes, each followed from the one before it."""
+    values = [along[p][0] for p in axes]
+    done: dict[tuple[int, ...], Shapes] = {}
+    order = sorted(product(*(range(len(v)) for v in values)), key=sum)  # the anchor is the first of each
+    for number, index in enumerate(order):
+        report(number / len(order))
+        if not any(index):
+            done[index] = start
+            continue
+        axis = max(a for a, i in enumerate(index) if i)
+        before = done[(*index[:axis], index[axis] - 1, *index[axis + 1 :])]
+        places = tuple(with_value(place, axes[axis], values[axis][index[axis]]) for place in before.places)
+        moving = axes[axis] in found.theta, axes[axis] in found.phi
+        done[index] = shapes.followed(box, before, places, moving)
+    return _increasing(NodeShapes(axes, tuple(values), done))
+
+
+def _increasing(grid: NodeShapes) -> NodeShapes:
+    """The grid with its nodes in order: the anchor may be at the end of an axis."""
+    turned = [bool(v[0] > v[-1]) for v in grid.nodes]
+    at = {
+        tuple(len(v) - 1 - i if t else i for i, v, t in zip(index, grid.nodes, turned, strict=True)): one
+        for index, one in grid.at.items()
+    }
+    return NodeShapes(
+        grid.axes, tuple(v[::-1] if t else v for v, t in zip(grid.nodes, turned, strict=True)), at
+    )
+
+
+def _part(grid: NodeShapes, axes: tuple[int, ...], anchor: Place) -> NodeShapes:
+    """The grid's part with some of its axes, the others at the anchor."""
+    places = [int(np.argmin(abs(v - anchor[p]))) for p, v in zip(grid.axes, grid.nodes, strict=True)]
+    kept = [a for a, p in enumerate(grid.axes) if p in axes]
+    at = {
+        tuple(index[a] for a in kept): one
+        for index, one in grid.at.items()
+        if all(index[a] == places[a] for a in range(len(index)) if a not in kept)
+    }
+    return NodeShapes(tuple(grid.axes[a] for a in kept), tuple(grid.nodes[a] for a in kept), at)

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a hair with parameters to one baked model over all their values.
+
+The lobes are found at one corner of the box of parameters and followed from there (shapes.py). Tables get the
+axes on which their shapes depend (dependence.py), with as many nodes as blending needs (nodeshapes.py); the
+mixture gets those on which shares or turns depend (nodemixture.py). What the baked model loses is measured at
+random places in the box. Where that is too much, the axes that lose most are refined, as long as the budget
+lasts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+
+from ..axes import MAX_AXES
+from ..errors import HairlutError
+from ..model import BakedModel
+from . import boxpromise, dependence, nodemixture, nodeshapes, nodetables, shapes
+from .box import Box, Place
+from .boxpromise import Measured
+from .dependence import Dependence
+from .refine import GAIN, HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART
+from .shapes import Shapes
+
+NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
+START = {"theta_r": 49, "offset": 25}
+COARSE = {"theta_r": 25, "offset": 13}
+LIMITS = {"theta_r": 145, "offset": 65}
+TWELVES = 12  # rows of theta_r are so many intervals, times a whole number
+SLOW = 80.0  # times as long as the anchor a fit takes for each parameter, about
+RARE = 5.0  # times the tolerance that the worst hundredth of places may lose
+
+Report = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class FittedBox:
+    """A baked model over the parameters of a box. counts: rows of theta_r and offsets that were fitted;
+    allowed: V that each axis might cost; reach: V that so many lobes have on the cells they were fitted to;
+    measured: losses at random places; lost: V by axis that its nodes' distance costs."""
+
+    box: Box
+    model: BakedModel
+    counts: dict[str, int]
+    allowed: dict[str, float]
+    reach: float
+    measured: Measured
+    lost: dict[str, float]
+
+
+class _OutOfTime(Exception):
+    pass
+
+
+def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float, report: Report) -> FittedBox:
+    """The model of a hair with parameters. lobes: how many, or None to choose; budget: seconds that it may
+    take, about."""
+    start = perf_counter()
+    random = np.random.default_rng(0)
+    place, count = shapes.first_anchor(box, lobes, lambda share: report("choosing lobes", share))
+    began = perf_counter()
+    anchor = _anchor(box, place, count, START["theta_r"], report)
+    slow = SLOW * len(box.parameters) * (perf_counter() - began) > budget - (perf_counter() - start)
+    counts = dict(COARSE if slow else START)
+    if slow:
+        anchor = shapes.of_rows(anchor, tuple(range(0, START["theta_r"], 2)))
+    found = _dependence(box, anchor, report)
+    allowed = {axis: NODE_PART * tolerance for axis in (*counts, *(p.name for p in box.parameters))}
+    best: FittedBox | None = None
+    while True:
+        began = perf_counter()
+        last = start + budget if best else np.inf
+        so_far = _report(report, best, last)
+        try:
+            if anchor.theta_r.size != counts["theta_r"]:
+                anchor = _anchor(box, place, count, counts["theta_r"], so_far)
+            fitted = _fit_once(box, name, anchor, found, counts, allowed, tolerance, random, so_far)
+        except _OutOfTime:
+            return best
+        if best is None or _score(fitted) < _score(best):
+            best = fitted
+        finer = _finer(fitted, tolerance)
+        if finer is None or perf_counter() + (perf_counter() - began) > start + budget:
+            return best
+        counts, allowed = finer
+
+
+def limits(found: FittedBox, tolerance: float) -> list[str]:
+    """What keeps a fit from the tolerance: names of parameters and axes, "lobes", or nothing."""
+    v, weight = found.measured.variance.mean(axis=1), found.measured.weight
+    near = v.mean() <= found.reach + tolerance and np.quantile(v, 0.99) <= found.reach + RARE * tolerance
+    if near and np.quantile(weight, 0.99) <= HEAVIEST:
+        return []
+    return list(_standing_out(found, tolerance)) or ["lobes"]
+
+
+def _standing_out(found: FittedBox, tolerance: float) -> dict[str, float]:
+    """The axes that lose more than their part of the tolerance, and how many times as much."""
+    parts = {axis: v / (SHARE_OF_AXIS * tolerance) for axis, v in found.lost.items()}
+    return {axis: part for axis, part in parts.items() if part > 1}
+
+
+def _finer(found: FittedBox, tolerance: float) -> tuple[dict[str, int], dict[str, float]] | None:
+    """Counts and what is allowed with the axes refined that stand out, or None if none does."""
+    if not limits(found, tolerance):
+        return None
+    counts, allowed = dict(found.counts), dict(found.allowed)
+    for axis, part in _standing_out(found, tolerance).items():
+        step = float(np.clip(part**0.25, 1.25, LARGEST_STEP))
+        if axis in counts:
+            even = TWELVES if axis == "theta_r" else 2
+            counts[axis] = min(even * int(np.ceil((counts[axis] - 1) * step / even)) + 1, LIMITS[axis])
+        allowed[axis] /= step**4
+    return None if (counts, allowed) == (found.counts, found.allowed) else (counts, allowed)
+
+
+def _score(found: FittedBox) -> float:
+    v = found.measured.variance.mean(axis=1)
+    return float(v.mean() + np.quantile(v, 0.99) / RARE)
+
+
+def _report(report: Report, best: FittedBox | None, last: float) -> Report:
+    """Reports V so far, and ends the work after the time `last`."""
+
+    def so_far(stage: str, share: float) -> None:
+        if perf_counter() > last:
+            raise _OutOfTime
+        reached = f"V {best.measured.variance.mean():.4f} so far, " if best else ""
+        report(f"{reached}{stage}", share)
+
+    return so_far
+
+
+def _anchor(box: Box, place: Place, count: int, rows: int, report: Report) -> Shapes:
+    """The lobes at the anchor: with turns where those gain."""
+    if not box.hair.offsets:
+        return shapes.at_anchor(box, place, count, False, rows, lambda share: report("fitting lobes", share))
+    turning = shapes.turns(box, place, count)
+    return shapes.at_anchor(box, place, count, turning, rows, lambda share: report("fitting lobes", share))
+
+
+def _dependence(box: Box, anchor: Shapes, report: Report) -> Dependence:
+    some = shapes.of_rows(anchor, shapes.some(len(anchor.theta_r)))
+    tied = shapes.with_common_azimuths(some)
+    if tied.variance() > some.variance() + GAIN:
+        tied = some
+    found = dependence.dependence(box, tied, lambda share: report("finding what depends on what", share))
+    for axes, what in ((found.theta, "inclinations"), (found.phi, "azimuths")):
+        _check_axes(box, axes, what)
+    return found
+
+
+def _check_axes(box: Box, axes: tuple[int, ...], what: str) -> None:
+    if len(axes) > MAX_AXES:
+        names = ", ".join(box.parameters[p].name for p in axes)
+        raise HairlutError(
+            f"{what} depend on {names}: a texture has at most {MAX_AXES} axes of parameters: give one of "
+            "them a fixed value"
+        )
+
+
+def _fit_once(
+    box: Box,
+    name: str,
+    anchor: Shapes,
+    found: Dependence,
+    counts: dict[str, int],
+    allowed: dict[str, float],
+    tolerance: float,
+    random: np.random.Generator,
+    report: Report,
+) -> FittedBox:
+    along = nodeshapes.chosen(box, found, allowed, lambda share: report("choosing nodes", share))
+    start, theta, phi = nodeshapes.at_nodes(
+        box, anchor, found, along, lambda share: report("fitting lobes", share)
+    )
+    reach = float(np.mean([one.variance() for one in (*theta.at.values(), *phi.at.values())]))
+    report("baking", 0.0)
+    lobes = nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance)
+    axes = nodemixture.depends(box, lobes, start, SHARE_OF_AXIS * tolerance)
+    _check_axes(box, axes, "shares and turns")
+    angle = box.hair.angles(counts["offset"])
+    mixture = nodemixture.mixture(
+        box, lobes, start, axes, start.theta_r, angle, allowed, lambda share: report("fitting shares", share)
+    )
+    model = BakedModel(name, tuple(lobes), mixture, {}, box.parameters)
+    report("measuring", 0.0)
+    measured = boxpromise.measured(box, model, random, lambda share: report("measuring", share))
+    lost = boxpromise.lost(box, model, random)
+    if not np.isfinite(measured.variance).all():
+        raise HairlutError("the fit has numbers that are not finite")
+    return FittedBox(box, model, counts, allowed, reach, measured, lost)

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The shapes of a hair's lobes at places in its box of parameters.
+
+At the anchor, a corner that needs as many lobes as any, they are found from nothing. From there they are
+followed from place to place, each starting from those of the place before, so that a lobe stays the same one
+over the whole box, and tables may blend its quantiles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..lobes import Array
+from . import cells, tied
+from .box import Box, Place
+from .lobesfit import Row, first_row, one_more
+from .refine import GAIN, MAX_LOBES, PART, bright_parts, fit_rows
+from .tied import Block
+from .turning import TWO_PI
+
+OFFSETS = 9  # by which shapes are fitted
+CELLS = 32  # of theta_i
+SWEEPS = 40
+JOINT = 30  # sweeps of all places that have the same shapes
+BOTH, THETA, PHI, NEITHER = (True, True), (True, False), (False, True), (False, False)
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """The lobes of R viewers theta_r (R,) at some places that have the same shapes: blocks and rows in the
+    order of the places, then of theta_r. edges (R, n+1): of the cells of theta_i, rad. tied: whether the
+    azimuths are those of all theta_r."""
+
+    places: tuple[Place, ...]
+    theta_r: Array
+    angle: Array
+    edges: Array
+    blocks: list[Block]
+    rows: list[Row]
+    tied: bool
+
+    @property
+    def theta(self) -> Array:
+        """(R, n, K) masses."""
+        return np.stack([row.theta for row in self.rows[: len(self.theta_r)]])
+
+    @property
+    def phi(self) -> Array:
+        """(R, K, m) masses."""
+        return np.stack([row.phi for row in self.rows[: len(self.theta_r)]])
+
+    @property
+    def light(self) -> Array:
+        """(R, K) each lobe's largest share among the places, the mean over the offsets."""
+        share = np.stack([row.share.mean(axis=0) for row in self.rows])
+        return share.reshape(len(self.places), len(self.theta_r), -1).max(axis=0)
+
+    @property
+    def bright(self) -> Array:
+        """(R, K) the part of each lobe's own peak above which its weights count at some place."""
+        count = len(self.theta_r)
+        parts = [self.rows[i : i + count] for i in range(0, len(self.rows), count)]
+        return np.min([bright_parts(self.edges, rows).T for rows in parts], axis=0)
+
+    @property
+    def turning(self) -> bool:
+        return any(row.turn.any() for row in self.rows)
+
+    def variance(self) -> float:
+        return tied.variance(self.blocks, self.rows)
+
+    def improved(self, sweeps: int, moving: tuple[bool, bool], turning: bool) -> Shapes:
+        rows = tied.improved(self.blocks, self.rows, self.angle, sweeps, turning, moving)
+        return replace(self, rows=rows)
+
+
+def first_anchor(box: Box, lobes: int | None, report: Callable[[float], None]) -> tuple[Place, int]:
+    """(the corner that needs most lobes, how many): of equal ones that which loses most with one fewer."""
+    found = []
+    corners = box.corners()
+    for at, place in enumerate(corners):
+        report(at / len(corners))
+        found.append((*_needed(box, place, lobes), place))
+    count, _, place = max(found, key=lambda one: one[:2])
+    return place, count
+
+
+def _needed(box: Box, place: Place, lobes: int | None) -> tuple[int, float]:
+    """(lobes that gain at a place, V with one fewer)."""
+    angle = box.hair.angles(OFFSETS)
+    viewers = box.hair.rows(13)[[4, 8]]
+    edges = _edges(box, (place,), viewers, angle)
+    blocks = _blocks(box, (place,), viewers, angle, edges, False)
+    rows: list[Row | None] = [None] * len(blocks)
+    reached: list[float] = []
+    for _ in range(lobes or MAX_LOBES):
+        rows = [one_more(r, b.mass, angle, box.hair.offsets) for r, b in zip(rows, blocks, strict=True)]
+        reached.append(tied.variance(blocks, rows))
+        if reached[-1] < GAIN or (len(reached) > 2 and min(reached[-2:]) > min(reached[:-2]) - GAIN):
+            break
+    least = min(reached)
+    count = next(k for k, v in enumerate(reached) if v <= least + max(GAIN, PART * least))
+    return lobes or count + 1, reached[count - 1] if count else np.inf
+
+
+def at_anchor(
+    box: Box, place: Place, count: int, turning: bool, rows: int, report: Callable[[float], None]
+) -> Shapes:
+    """The lobes of so many rows of theta_r at one place, from nothing."""
+    angle, theta_r = box.hair.angles(OFFSETS), box.hair.rows(rows)
+    edges = _edges(box, (place,), theta_r, angle)
+    m = cells.phi_count(box.density_at(place), theta_r[list(some(rows))], np.sin(angle))
+    data = cells.of_density(box.density_at(place), theta_r, np.sin(angle), edges, m)
+    fitted = fit_rows(data, angle, count, turning, report)
+    blocks = [Block(mass, j, j) for j, mass in enumerate(data.mass)]
+    return Shapes((place,), theta_r, angle, edges, blocks, fitted, False)
+
+
+def turns(box: Box, place: Place, count: int) -> bool:
+    """Whether so many lobes lose more at a place where they may not turn."""
+    angle, theta_r = box.hair.angles(OFFSETS), box.hair.rows(3)[1:2]
+    edges = _edges(box, (place,), theta_r, angle)
+    mass = _blocks(box, (place,), theta_r, angle, edges, False)[0].mass
+    free, fixed = (first_row(mass, angle, count, turning).variance(mass) for turning in (True, False))
+    return fixed > free + GAIN
+
+
+def some(rows: int) -> tuple[int, ...]:
+    """Numbers of the rows by which dependences are found: at grazing angles hair is unlike elsewhere."""
+    return tuple(round((rows - 1) * part) for part in (1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6))
+
+
+def of_rows(shapes: Shapes, kept: tuple[int, ...]) -> Shapes:
+    """The shapes of some of the rows."""
+    numbers = [p * len(shapes.theta_r) + j for p in range(len(shapes.places)) for j in kept]
+    return replace(
+        shapes,
+        theta_r=shapes.theta_r[list(kept)],
+        edges=shapes.edges[list(kept)],
+        blocks=[shapes.blocks[i] for i in numbers],
+        rows=[shapes.rows[i] for i in numbers],
+    )
+
+
+def with_common_azimuths(shapes: Shapes) -> Shapes:
+    """The shapes with one azimuth for all theta_r, fitted to them."""
+    blocks = [replace(block, phi=0) for block in shapes.blocks]
+    rows = tied.with_common_azimuths(blocks, shapes.rows)
+    there = replace(shapes, blocks=blocks, rows=rows, tied=True)
+    return there.improved(JOINT, BOTH, shapes.turning)
+
+
+def followed(
+    box: Box, before: Shapes, places: tuple[Place, ...], moving: tuple[bool, bool], sweeps: int = SWEEPS
+) -> Shapes:
+    """The shapes at other places, as many as before, that start from those before."""
+    edges = _edges(box, places, before.theta_r, before.angle)
+    blocks = _blocks(box, places, before.theta_r, before.angle, edges, before.tied)
+    m = blocks[0].mass.shape[2]
+    count = len(before.theta_r)
+    rows = [
+        replace(
+            row,
+            theta=cells.rebinned(row.theta, before.edges[i % count], edges[i % count]),
+            phi=around(row.phi, m),
+        )
+        for i, row in enumerate(before.rows)
+    ]
+    there = replace(
+        before, places=places, edges=edges, blocks=blocks, rows=tied.started(blocks, rows, moving)
+    )
+    return there.improved(sweeps, moving, before.turning)
+
+
+def joined(box: Box, shapes: Shapes, places: tuple[Place, ...], moving: tuple[bool, bool]) -> Shapes:
+    """The shapes that several places have together, the first of which has these."""
+    edges = _edges(box, places, shapes.theta_r, shapes.angle)
+    blocks = _blocks(box, places, shapes.theta_r, shapes.angle, edges, shapes.tied)
+    m, count = blocks[0].mass.shape[2], len(shapes.theta_r)
+    rows = [
+        replace(row, theta=cells.rebinned(row.theta, shapes.edges[i], edges[i]), phi=around(row.phi, m))
+        for i, row in enumerate(shapes.rows[:count])
+    ]
+    there = replace(shapes, places=places, edges=edges, blocks=blocks, rows=rows * len(places))
+    return there.improved(JOINT, moving, shapes.turning)
+
+
+def _edges(box: Box, places: tuple[Place, ...], theta_r: Array, angle: Array) -> Array:
+    offset = np.sin(angle[np.unique([0, len(angle) // 2, max(len(angle) - 2, 0)])])
+    return cells.theta_edges(box.mean_density(places), theta_r, offset, CELLS)
+
+
+def _blocks(
+    box: Box, places: tuple[Place, ...], theta_r: Array, angle: Array, edges: Array, tied_rows: bool
+) -> list[Block]:
+    offset = np.sin(angle)
+    viewers = theta_r[np.unique([0, len(theta_r) // 2, len(theta_r) - 1])]
+    m = max(cells.phi_count(box.density_at(place), viewers, offset[:-1][::2]) for place in places)
+    return [
+        Block(mass, j, 0 if tied_rows else j)
+        for place in places
+        for j, mass in enumerate(cells.of_density(box.density_at(place), theta_r, offset, edges, m).mass)
+    ]
+
+
+def around(phi: Array, m: int) -> Array:
+    """(K, m) masses of even cells around the fibre of those of another number."""
+    if phi.shape[1] == m:
+        return phi
+    below = np.concatenate([np.zeros((len(phi), 1)), np.cumsum(phi, axis=1)], axis=1)
+    old, new = (np.linspace(0, TWO_PI, count + 1) for count in (phi.shape[1], m))
+    return np.diff(np.stack([np.interp(new, old, one) for one in below]), axis=1).astype(phi.dtype)

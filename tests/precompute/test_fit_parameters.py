@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a file that defines bsdf over named parameters to one model whose textures draw it at all of them."""
+
+import json
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from hairlut import cli, exr
+from hairlut.axes import Parameter
+from hairlut.fit import box, nodes, shapes, tied
+
+HAIR = """
+import numpy as np
+
+PARAMETERS = {"width": (0.1, 0.4), "mix": (0.2, 0.8, 0.6)}
+
+def lobe(theta_r, theta_i, shift, sigma, phi, kappa):
+    x = (theta_i + theta_r - shift) / sigma
+    return 0.1 * np.exp(-0.5 * x * x) / sigma * np.exp(kappa * (np.cos(phi) - 1))
+
+def bsdf(theta_r, theta_i, phi, width, mix):
+    narrow = lobe(theta_r, theta_i, 0.0, width, phi - np.pi, 8.0)
+    broad = lobe(theta_r, theta_i, 0.1, 0.6, phi, 3.0)
+    return (mix * narrow + (1 - mix) * broad) / np.cos(theta_i)
+"""
+
+
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("parameters")
+    path = folder / "hair.py"
+    path.write_text(HAIR)
+    assert cli.main(["fit", str(path), "--out", str(folder), "--json", "--plot", str(folder / "a.png")]) == 0
+    assert (folder / "a.png").stat().st_size > 1000
+    return exr.read_model(folder / "hair")
+
+
+@pytest.fixture(scope="module")
+def bsdf():
+    space = {}
+    exec(HAIR, space)
+    return space["bsdf"]
+
+
+def variance(model, bsdf, theta_r, drawn, true, count=(480, 120)):
+    """V of the model at some parameters for the hair at others, by a midpoint rule over the sphere."""
+    n, m = count
+    theta_i = (((np.arange(n) + 0.5) / n - 0.5) * np.pi)[:, None]
+    phi = (np.arange(m) + 0.5) / m * 2 * np.pi
+    p = bsdf(theta_r, theta_i, phi, *true) * np.cos(theta_i) ** 2
+    q = model.pdf(theta_r, 0.0, theta_i, phi, 0.0, dict(zip(("width", "mix"), drawn, strict=True)))
+    size = np.pi / n * 2 * np.pi / m
+    assert q.sum() * size == pytest.approx(1, abs=2e-3)
+    return float((p * p / q).sum() / p.sum() ** 2 / size - 1)
+
+
+def test_a_table_has_only_the_axes_on_which_it_depends(fitted):
+    assert [p.name for p in fitted.parameters] == ["width", "mix"]
+    assert [p.standard for p in fitted.parameters] == [0.25, 0.6]
+    axes = {table.name: [axis.name for axis in table.axes] for table in fitted.tables}
+    theta = sorted(names for name, names in axes.items() if name.endswith("_theta"))
+    assert theta == [[], ["width"]]
+    assert all(names == [] for name, names in axes.items() if name.endswith("_phi"))
+    assert "mix" in [axis.name for axis in fitted.mixture.axes]
+
+
+def test_it_draws_the_hair_off_the_nodes(fitted, bsdf):
+    random = np.random.default_rng(1)
+    found = []
+    for theta_r in random.uniform(-1.3, 1.3, 12):
+        at = random.uniform(0.1, 0.4), random.uniform(0.2, 0.8)
+        found.append(variance(fitted, bsdf, theta_r, at, at))
+    assert np.mean(found) < 0.006
+    assert max(found) < 0.015
+
+
+@pytest.mark.parametrize(("drawn", "true"), [((0.2, 0.5), (0.15, 0.5)), ((0.2, 0.75), (0.2, 0.5))])
+def test_a_wrong_parameter_costs_samples(fitted, bsdf, drawn, true):
+    right, wrong = (variance(fitted, bsdf, 0.4, at, true) for at in (true, drawn))
+    assert wrong > 10 * right
+
+
+def test_the_promise_is_in_the_header(fitted):
+    told = fitted.errors["mixture"]
+    assert told["low"] < told["relative_variance"] < told["high"] < 0.006
+    assert told["median_relative_variance"] < told["percentile99_relative_variance"]
+
+
+GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("PARAMETERS = [1]\n" + GOOD, "PARAMETERS is of type list: expected PARAMETERS = {"),
+        ("PARAMETERS = {'a': 1}\n" + GOOD, "PARAMETERS has 'a': 1: expected"),
+        ("PARAMETERS = {'a': (1,)}\n" + GOOD, "PARAMETERS has 'a': (1,): expected"),
+        ("PARAMETERS = {'a': ('x', 'y')}\n" + GOOD, "PARAMETERS has 'a': ('x', 'y'): expected"),
+        ("PARAMETERS = {'a': (2, 1)}\n" + GOOD, "parameter a: is 2 1 1.5"),
+        ("PARAMETERS = {'a': (0, 1, 2)}\n" + GOOD, "parameter a: is 0 1 2"),
+        ("PARAMETERS = {'a': (0, float('nan'))}\n" + GOOD, "parameter a: is 0 nan"),
+        ("PARAMETERS = {'A': (0, 1)}\n" + GOOD, "parameter 'A': expected a name"),
+        ("PARAMETERS = {'phi': (0, 1)}\n" + GOOD, "parameter phi: expected another name than"),
+        ("PARAMETERS = {'b': (0, 1)}\n" + GOOD, "takes no b, which PARAMETERS names"),
+        (
+            "PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, theta_i, phi, offset, a, b):\n    return 1.0\n",
+            "takes b, which PARAMETERS does not name",
+        ),
+        ("PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, a):\n    return 1.0\n", "expected a function bsdf("),
+        (
+            f"PARAMETERS = {{f'p{{i}}': (0, 1) for i in range(9)}}\n{GOOD.replace('a)', '**a)', 1)}",
+            "9 parameters: expected at most 8",
+        ),
+        (
+            "PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, theta_i, phi, a):\n    return 0.5 - a + 0 * phi\n",
+            "bsdf is -0.5 at theta_r = ",
+        ),
+    ],
+)
+def test_wrong_parameters_are_refused_in_one_line(tmp_path, capsys, text, expected):
+    (tmp_path / "hair.py").write_text(text)
+    assert cli.main(["fit", str(tmp_path / "hair.py"), "--out", str(tmp_path / "out")]) == cli.WRONG_USE
+    said = capsys.readouterr().err
+    assert "hair.py" in said
+    assert expected in said
+    assert "Traceback" not in said
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_fewest_nodes_stand_where_a_function_bends():
+    x = np.linspace(0, 1, 17)
+    y = x**4
+
+    def loss(i, j):
+        blend = y[i] + (y[j] - y[i]) * (x[i : j + 1] - x[i]) / (x[j] - x[i])
+        return float(abs(blend - y[i : j + 1]).max())
+
+    kept = nodes.fewest(len(x), loss, 0.02)
+    assert kept[0] == 0
+    assert kept[-1] == len(x) - 1
+    assert all(loss(i, j) <= 0.02 for i, j in pairwise(kept))
+    assert np.diff(kept)[0] > np.diff(kept)[-1]
+    assert nodes.fewest(len(x), lambda i, j: 0.0, 0.02) == [0, len(x) - 1]
+    assert nodes.fewest(len(x), lambda i, j: 1.0, 0.02) == list(range(len(x)))
+
+
+def test_places_together_tell_lobes_apart_that_one_alone_does_not():
+    """Two lobes of one azimuth: one place's light does not say which part of it is whose, two do."""
+
+    def density(theta_r, theta_i, phi, offset, mix):
+        narrow, broad = (np.exp(-0.5 * ((theta_i + theta_r) / s) ** 2) / s for s in (0.1, 0.4))
+        around = 1 + 0.8 * np.cos(phi)
+        return (mix * narrow * around + (1 - mix) * broad * (2 - around)) * np.cos(theta_i)
+
+    given = box.of_parameters(density, (Parameter("mix", 0.1, 0.9, 0.5),), False)
+    places = ((0.5,), (0.15,), (0.85,))
+    first = shapes.at_anchor(given, places[0], 2, False, 13, lambda share: None)
+    apart = shapes.joined(given, first, places, shapes.BOTH)
+    assert apart.variance() < 0.003
+    row = apart.rows[6]
+    narrow = int(row.theta.max(axis=0).argmax())
+    shares = [rows.share[0, narrow] for rows in apart.rows[6::13]]
+    assert shares == pytest.approx([0.5, 0.15, 0.85], abs=0.03)
+    again = tied.improved(apart.blocks, apart.rows, apart.angle, 1, False, shapes.NEITHER)
+    assert again[0].theta is apart.rows[0].theta
+
+
+def test_steps_are_equal_factors_over_a_wide_range_and_corners_have_both_ends():
+    given = box.Box(None, (Parameter("a", 0.1, 10, 1), *(Parameter(x, 0, 1, 0) for x in "bcde")), None)
+    values = given.steps(0, 5)
+    assert values[1:] / values[:-1] == pytest.approx(10**0.5)
+    assert given.steps(1, 3) == pytest.approx([0, 0.5, 1])
+    corners = np.array(given.corners())
+    assert len(corners) == box.CORNERS
+    assert (corners.min(axis=0) == [0.1, 0, 0, 0, 0]).all()
+    assert (corners.max(axis=0) == [10, 1, 1, 1, 1]).all()
+    assert json.dumps(given.named(given.standard)) == '{"a": 1, "b": 0, "c": 0, "d": 0, "e": 0}'

@@ -12,6 +12,10 @@
  * tabulated over theta_r; without an azimuth table its azimuth is uniform. The mixture gives each lobe's share, and the angle
  * by which the lobe is turned around the fibre, over theta_r and the offset at which the fibre is hit.
  *
+ * A model may depend on up to 8 named parameters of the hair, such as its roughness and its absorption: then it is one model for
+ * strands that all differ, and each call passes the parameters of its strand (hairlut_sample_strand, hairlut_pdf_strand). For
+ * fixed parameters it is a model like any other. Every function without a `parameters` argument reads it at its standard values.
+ *
  * Angles are in radians. theta is the inclination from the plane normal to the fibre, in [-pi/2, pi/2]; phi is the
  * azimuth around the fibre. (theta_r, phi_r) is the known viewer direction, (theta_i, phi_i) the sampled incident one.
  * The offset is where the viewer's ray passes the fibre's axis, in radii, from -1 to 1. Its sign is that of Chiang (2016) and
@@ -71,7 +75,12 @@ HAIRLUT_API const char *hairlut_result_string(hairlut_result result);
 
 typedef struct hairlut_model hairlut_model;
 
-enum { HAIRLUT_MAX_LOBES = 16, HAIRLUT_NAME_SIZE = 32 /* bytes of a lobe's name, with its end */ };
+enum {
+    HAIRLUT_MAX_LOBES = 16,
+    HAIRLUT_MAX_PARAMETERS = 8,
+    HAIRLUT_MAX_AXES = 4,  /* parameters on which one table, or the mixture, depends */
+    HAIRLUT_NAME_SIZE = 32 /* bytes of the name of a lobe or a parameter, with its end */
+};
 
 /* "printed", "fitted" or "brown": a model compiled into the library. NULL for any other name. Nothing to free. */
 HAIRLUT_API const hairlut_model *hairlut_builtin(const char *name);
@@ -87,7 +96,28 @@ typedef enum hairlut_azimuth {
 } hairlut_azimuth;
 
 /* The descriptors below begin with their size, which is the size of the struct as the caller's compiler knows it: a later
- * version can add fields at their ends without breaking a binary. A size that this version does not know is refused. */
+ * version can add fields at their ends without breaking a binary. The sizes of 2.0 are known: such descriptors have no parameters
+ * and no axes. A size that this version does not know is refused. */
+
+/* A parameter of the hair on which tables and the mixture may depend. */
+typedef struct hairlut_parameter {
+    size_t size; /* sizeof(hairlut_parameter) */
+    const char
+        *name;   /* [a-z][a-z0-9_]*, at most 31 characters, no other parameter's; not theta_r, theta_i, phi, phi_r, phi_i,
+                         offset, u, shares or lobe */
+    float least; /* values are clamped to least .. most: increasing, by 1e-30 or more, within [-1e30, 1e30] */
+    float most;
+    float standard; /* from least to most: the value where a caller gives none */
+} hairlut_parameter;
+
+/* An axis of a table or of the mixture: the values of a parameter at which it is tabulated. Between nodes, what is tabulated is
+ * blended linearly in the parameter, over several axes multilinearly. */
+typedef struct hairlut_parameter_nodes {
+    size_t size;         /* sizeof(hairlut_parameter_nodes) */
+    int parameter;       /* its number in the model; no other axis' of the same table */
+    int count;           /* 2 to 64 */
+    const float *values; /* increasing, by 1e-30 or more, from the parameter's least to its most, both exactly */
+} hairlut_parameter_nodes;
 
 /* One table as it stands in a file (luts/FORMAT.md). Row j belongs to theta_r = theta_r_min + j (theta_r_max - theta_r_min) /
  * (height - 1). Texel i of a row is a pair of floats: the angle x whose cumulative probability is knot i, and dx/du there.
@@ -103,7 +133,10 @@ typedef struct hairlut_table {
     float domain_min;    /* rad, -2 pi <= domain_min; the first angle of every row */
     float domain_max;    /* rad, <= 2 pi; the last angle of every row */
     hairlut_warp warp;
-    float warp_e; /* the parameter of octaves, 1e-12 to 1; ignored for the uniform warp */
+    float warp_e;   /* the parameter of octaves, 1e-12 to 1; ignored for the uniform warp */
+    int axis_count; /* 0 to HAIRLUT_MAX_AXES: the parameters on which the table depends. Its texels are then those of one table
+                       of `height` rows for each node of the axes, the first axis slowest; at most 65536 rows in all */
+    const hairlut_parameter_nodes *axes; /* axis_count descriptors, each of the size that the first one states */
 } hairlut_table;
 
 /* A lobe: the product of two tables. Lobes that pass the same table pointers share the memory of those tables. */
@@ -117,7 +150,12 @@ typedef struct hairlut_lobe_desc {
 
 /* Shares and turns at the nodes of a grid over theta_r and the offset. Both are linear in theta_r and in the asin of the offset
  * between nodes, and constant beyond them; turns are blended along the shorter arc. One node where nothing depends on an axis.
- * At most 2^18 nodes in all. Lobe k's value at theta_r node j and offset node o stands at [(k*theta_r_count + j)*offset_count + o]. */
+ * Lobe k's value at theta_r node j and offset node o stands at [(k*theta_r_count + j)*offset_count + o].
+ *
+ * A mixture over parameters has such a grid for each node p of its axes, the first axis slowest: lobe k's value stands at
+ * [((k*nodes + p)*theta_r_count + j)*offset_count + o]. Shares, which sum to 1 at each node, and turns are blended over the
+ * parameters first: turns as t0 + sum w_i wrap(t_i - t0), where t0 is that of the lower nodes, and wrap leads to [-pi, pi).
+ * At most 2^18 nodes in all. */
 typedef struct hairlut_mixture_desc {
     size_t size;          /* sizeof(hairlut_mixture_desc) */
     int theta_r_count;    /* 1 to 4096 */
@@ -127,6 +165,8 @@ typedef struct hairlut_mixture_desc {
     const float *share;   /* finite, not negative, at each node at least one above 0, in any unit; NULL: equal shares */
     const float *turn;    /* rad, of at most 8 pi in size; NULL: 0 */
     int mirrored;         /* 1: an offset -h has the shares and turns of h, and the azimuths drawn are negated; else 0 */
+    int axis_count;       /* 0 to HAIRLUT_MAX_AXES: the parameters on which the mixture depends */
+    const hairlut_parameter_nodes *axes; /* axis_count descriptors, each of the size that the first one states */
 } hairlut_mixture_desc;
 
 typedef struct hairlut_model_desc {
@@ -134,6 +174,8 @@ typedef struct hairlut_model_desc {
     int lobe_count;                      /* 1 to HAIRLUT_MAX_LOBES */
     const hairlut_lobe_desc *lobes;      /* lobe_count descriptors, each of the size that the first one states */
     const hairlut_mixture_desc *mixture; /* NULL: equal shares, no turns */
+    int parameter_count;                 /* 0 to HAIRLUT_MAX_PARAMETERS */
+    const hairlut_parameter *parameters; /* parameter_count descriptors, each of the size that the first one states */
 } hairlut_model_desc;
 
 /* Memory for a model. A zeroed struct, or NULL in its place, means malloc and free. `allocate` returns memory
@@ -149,7 +191,7 @@ enum { HAIRLUT_MESSAGE_SIZE = 512 };
 
 /* Checks a table that did not come from this project's tools. HAIRLUT_OK, or an error; `message`, if not NULL, has room for
  * HAIRLUT_MESSAGE_SIZE bytes and receives what is wrong, where, and what was expected. Slopes must be 1e-9 to 1e12 rad per unit
- * of u. Reads width*height pairs of floats. */
+ * of u. Reads width*height pairs of floats, for each node of the table's axes. */
 HAIRLUT_API hairlut_result hairlut_validate(const hairlut_table *table, char *message);
 
 /* Builds a model from tables in memory, which are copied, into about four times their own memory in the order in which samples
@@ -171,8 +213,22 @@ HAIRLUT_API int hairlut_lobe_index(const hairlut_model *model, const char *name)
 
 typedef enum hairlut_angle { HAIRLUT_THETA = 0, HAIRLUT_PHI = 1 } hairlut_angle;
 
-/* Columns and rows of one of a lobe's tables; 0 and 0 where there is none. */
+/* Columns and rows of one of a lobe's tables, for one node of its axes; 0 and 0 where there is none. */
 HAIRLUT_API void hairlut_table_size(const hairlut_model *model, int lobe, hairlut_angle angle, int *width, int *height);
+
+/* The parameters of the hair on which the model depends; 0 for most models. */
+HAIRLUT_API int hairlut_parameter_count(const hairlut_model *model);
+
+/* The name of parameter 0 to count - 1, as long as the model lives; NULL for any other number. */
+HAIRLUT_API const char *hairlut_parameter_name(const hairlut_model *model, int parameter);
+
+/* The number of the parameter of that name; -1 if there is none. */
+HAIRLUT_API int hairlut_parameter_index(const hairlut_model *model, const char *name);
+
+/* A parameter's range and standard value; each pointer may be NULL. Returns 1, or 0, leaving them alone, for a number that no
+ * parameter has. */
+HAIRLUT_API int hairlut_parameter_range(const hairlut_model *model, int parameter, float *least, float *most,
+                                        float *standard);
 
 /* ---- one direction -------------------------------------------------------------------------------------------- */
 
@@ -195,6 +251,18 @@ HAIRLUT_API hairlut_sample hairlut_sample_hair(const hairlut_model *model, const
  * by the sum of the shares. phi_i may be any finite azimuth. Equal to the density returned with a sample but for rounding. */
 HAIRLUT_API float hairlut_pdf_hair(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset,
                                    float theta_i, float phi_i);
+
+/* The whole hair of one strand: the two functions above for a model over parameters. parameters: one number for each of the
+ * model's, in their order, or NULL for the standard values. A number outside its parameter's range is clamped; NaN gives density 0,
+ * with finite angles. A model without parameters reads none: this is then hairlut_sample_hair.
+ *
+ *     float strand[] = {beta_m, beta_n, absorption};       // the order of hairlut_parameter_name
+ *     hairlut_sample s = hairlut_sample_strand(hair, strand, NULL, theta_r, phi_r, offset, u_lobe, u_theta, u_phi); */
+HAIRLUT_API hairlut_sample hairlut_sample_strand(const hairlut_model *model, const float *parameters, const float *shares,
+                                                 float theta_r, float phi_r, float offset, float u_lobe, float u_theta,
+                                                 float u_phi);
+HAIRLUT_API float hairlut_pdf_strand(const hairlut_model *model, const float *parameters, const float *shares, float theta_r,
+                                     float phi_r, float offset, float theta_i, float phi_i);
 
 /* One lobe by itself, not turned: lobe 0 to count - 1. Any other number gives density 0, with finite angles. */
 HAIRLUT_API hairlut_sample hairlut_sample_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r,
@@ -256,6 +324,14 @@ HAIRLUT_API void hairlut_sample_hair_n(const hairlut_model *model, size_t n, con
 HAIRLUT_API void hairlut_pdf_hair_n(const hairlut_model *model, size_t n, const float *shares, const float *theta_r,
                                     const float *phi_r, const float *offset, const float *theta_i, const float *phi_i,
                                     float *pdf_angle);
+/* parameters: NULL for the standard values, or parameter_count * n floats, those of parameter p from p * n on. On a model over
+ * parameters these two compute one direction after the other where `parameters` is not NULL. */
+HAIRLUT_API void hairlut_sample_strand_n(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
+                                         const float *theta_r, const float *phi_r, const float *offset, const float *u_lobe,
+                                         const float *u_theta, const float *u_phi, hairlut_samples out);
+HAIRLUT_API void hairlut_pdf_strand_n(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
+                                      const float *theta_r, const float *phi_r, const float *offset, const float *theta_i,
+                                      const float *phi_i, float *pdf_angle);
 HAIRLUT_API void hairlut_sample_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r,
                                        const float *phi_r, const float *u_theta, const float *u_phi, hairlut_samples out);
 HAIRLUT_API void hairlut_pdf_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,

@@ -213,7 +213,7 @@ Model *create(const std::vector<TableData> &tables, const std::vector<LobeData> 
     for (const auto &[texels, theta_r_min, theta_r_max, low, high, octaves, e] : tables)
         descriptors.push_back({sizeof(hairlut_table), texels.data(), static_cast<int>(texels.shape(1)),
                                static_cast<int>(texels.shape(0)), theta_r_min, theta_r_max, low, high,
-                               octaves ? HAIRLUT_WARP_OCTAVES : HAIRLUT_WARP_UNIFORM, e});
+                               octaves ? HAIRLUT_WARP_OCTAVES : HAIRLUT_WARP_UNIFORM, e, 0, nullptr});
     std::vector<hairlut_lobe_desc> named;
     for (const auto &[name, theta, phi, sum] : lobes)
         named.push_back({sizeof(hairlut_lobe_desc), name.c_str(), &descriptors.at(static_cast<std::size_t>(theta)),
@@ -229,8 +229,11 @@ Model *create(const std::vector<TableData> &tables, const std::vector<LobeData> 
                                           offset.data(),
                                           share.data(),
                                           turn.data(),
-                                          mirrored ? 1 : 0};
-    const hairlut_model_desc desc = {sizeof(hairlut_model_desc), static_cast<int>(lobes.size()), named.data(), &mixture};
+                                          mirrored ? 1 : 0,
+                                          0,
+                                          nullptr};
+    const hairlut_model_desc desc = {
+        sizeof(hairlut_model_desc), static_cast<int>(lobes.size()), named.data(), &mixture, 0, nullptr};
     hairlut_model *made = nullptr;
     char message[HAIRLUT_MESSAGE_SIZE];
     if (hairlut_model_create(&desc, nullptr, &made, message) != HAIRLUT_OK)

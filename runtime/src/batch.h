@@ -26,6 +26,25 @@ typedef struct hairlut_batch {
                      const float *offset, const float *theta_i, const float *phi_i, float *pdf_angle);
 } hairlut_batch;
 
+/* Stores sample i of an array. */
+static inline void hairlut_put(hairlut_samples out, size_t i, hairlut_sample s)
+{
+    out.theta_i[i] = s.theta_i;
+    out.phi_i[i] = s.phi_i;
+    if (out.pdf_angle)
+        out.pdf_angle[i] = s.pdf_angle;
+    if (out.pdf_solid_angle)
+        out.pdf_solid_angle[i] = s.pdf_solid_angle;
+}
+
+/* Sample i's numbers, one of each of `count` arrays of n; NULL for NULL. */
+static inline const float *hairlut_gather(const float *values, int count, size_t n, size_t i, float *own)
+{
+    for (int k = 0; values && k < count; ++k)
+        own[k] = values[(size_t)k * n + i];
+    return values ? own : NULL;
+}
+
 extern const hairlut_batch hairlut_batch_portable;
 #ifdef HAIRLUT_BATCH_X86
 extern const hairlut_batch hairlut_batch_avx2;

@@ -3,29 +3,11 @@
 #include "batch.h"
 #include "internal.h"
 
-static void put(hairlut_samples out, size_t i, hairlut_sample s)
-{
-    out.theta_i[i] = s.theta_i;
-    out.phi_i[i] = s.phi_i;
-    if (out.pdf_angle)
-        out.pdf_angle[i] = s.pdf_angle;
-    if (out.pdf_solid_angle)
-        out.pdf_solid_angle[i] = s.pdf_solid_angle;
-}
-
-/* Sample i's shares, one number a lobe; NULL for the model's own. */
-static const float *gather(const hairlut_model *model, const float *shares, size_t n, size_t i, float *own)
-{
-    for (int k = 0; shares && k < model->lobe_count; ++k)
-        own[k] = shares[(size_t)k * n + i];
-    return shares ? own : NULL;
-}
-
 static void sample_lobe(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                         const float *u_theta, const float *u_phi, hairlut_samples out)
 {
     for (size_t i = 0; i < n; ++i)
-        put(out, i, hairlut_sample_lobe(model, lobe, theta_r[i], phi_r[i], u_theta[i], u_phi[i]));
+        hairlut_put(out, i, hairlut_sample_lobe(model, lobe, theta_r[i], phi_r[i], u_theta[i], u_phi[i]));
 }
 
 static void pdf_lobe(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
@@ -41,9 +23,9 @@ static void sample_hair(const hairlut_model *model, size_t n, const float *share
 {
     float own[HAIRLUT_MAX_LOBES];
     for (size_t i = 0; i < n; ++i)
-        put(out, i,
-            hairlut_sample_hair(model, gather(model, shares, n, i, own), theta_r[i], phi_r[i], offset ? offset[i] : 0.0f,
-                                u_lobe[i], u_theta[i], u_phi[i]));
+        hairlut_put(out, i,
+                    hairlut_sample_hair(model, hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
+                                        offset ? offset[i] : 0.0f, u_lobe[i], u_theta[i], u_phi[i]));
 }
 
 static void pdf_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
@@ -51,7 +33,7 @@ static void pdf_hair(const hairlut_model *model, size_t n, const float *shares, 
 {
     float own[HAIRLUT_MAX_LOBES];
     for (size_t i = 0; i < n; ++i)
-        pdf_angle[i] = hairlut_pdf_hair(model, gather(model, shares, n, i, own), theta_r[i], phi_r[i],
+        pdf_angle[i] = hairlut_pdf_hair(model, hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
                                         offset ? offset[i] : 0.0f, theta_i[i], phi_i[i]);
 }
 

@@ -3,8 +3,8 @@
 #ifndef HAIRLUT_BUILD_H
 #define HAIRLUT_BUILD_H
 
-#include "internal.h"
 #include "message.h"
+#include "strand.h"
 
 /* NaN is in no range */
 static inline int hairlut_within(float low, float high, float bound_low, float bound_high)
@@ -12,25 +12,96 @@ static inline int hairlut_within(float low, float high, float bound_low, float b
     return low >= bound_low && low < high && high <= bound_high;
 }
 
-/* A descriptor of `size` bytes, where this library knows `known`. */
-static inline hairlut_result hairlut_check_size(const char *type, size_t size, size_t known, char *message)
+/* A value of a parameter, and a gap between two nodes of it: 1 / gap is a float. */
+static const float hairlut_largest_value = 1e30f, hairlut_narrowest_gap = 1e-30f;
+
+/* Descriptors as 2.0 had them, for their sizes: without parameters and axes. */
+typedef struct hairlut_table_2_0 {
+    size_t size;
+    const float *texels;
+    int width, height;
+    float numbers[4];
+    hairlut_warp warp;
+    float warp_e;
+} hairlut_table_2_0;
+
+typedef struct hairlut_mixture_desc_2_0 {
+    size_t size;
+    int theta_r_count, offset_count;
+    const float *arrays[4];
+    int mirrored;
+} hairlut_mixture_desc_2_0;
+
+typedef struct hairlut_model_desc_2_0 {
+    size_t size;
+    int lobe_count;
+    const hairlut_lobe_desc *lobes;
+    const hairlut_mixture_desc *mixture;
+} hairlut_model_desc_2_0;
+
+/* A descriptor of `size` bytes, where this library knows `known` bytes, and `earlier` of 2.0. */
+static inline hairlut_result hairlut_check_size(const char *type, size_t size, size_t known, size_t earlier, char *message)
 {
-    if (size == known)
+    if (size == known || size == earlier)
         return HAIRLUT_OK;
     return hairlut_fail(size > known ? HAIRLUT_ERROR_VERSION : HAIRLUT_ERROR_ARGUMENT, message,
                         "size of a %s is %zu: expected sizeof(%s), which is %zu in hairlut %d.%d", type, size, type, known,
                         HAIRLUT_VERSION_MAJOR, HAIRLUT_VERSION_MINOR);
 }
 
-/* Floats that a table takes in a model: whole cache lines. */
+/* Descriptors of a known size as this version has them. NULL in place of a mixture: equal shares, no turns. */
+hairlut_table hairlut_known_table(const hairlut_table *table);
+hairlut_mixture_desc hairlut_known_mixture(const hairlut_mixture_desc *desc);
+hairlut_model_desc hairlut_known_model(const hairlut_model_desc *desc);
+
+/* Whether a word can name a lobe or a parameter. */
+int hairlut_is_name(const char *name);
+
+/* Axes by themselves: messages begin with "axis". */
+hairlut_result hairlut_validate_axes(const hairlut_parameter_nodes *axes, int axis_count, char *message);
+
+/* Axes that are valid by themselves, of a table or mixture called `owner`, and the model's parameters. */
+hairlut_result hairlut_match_axes(const char *owner, const hairlut_parameter_nodes *axes, int axis_count,
+                                  const hairlut_model_desc *desc, char *message);
+hairlut_result hairlut_validate_parameters(const hairlut_model_desc *desc, char *message);
+
+/* The nodes of all axes: the product of their counts; 1 without axes. */
+size_t hairlut_node_count(const hairlut_parameter_nodes *axes, int axis_count);
+
+/* Floats that a table takes in a model, for one node of its axes: whole cache lines. */
 size_t hairlut_table_floats(const hairlut_table *table);
 
-/* Fills an axis, whose arrays go to `memory`, of so many floats; returns the end of what it filled. The table is valid. */
-float *hairlut_build_axis(hairlut_axis *axis, const hairlut_table *table, float *memory);
+/* Fills an axis, whose arrays go to `memory`, of so many floats, from the first node's texels. The table is valid. */
+void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *table, float *memory);
 
-/* Names are for messages: "lobe 1 ('multiple')". desc may be NULL: equal shares, no turns. */
+/* Makes the axis the blend of those at the corners. The axis of node p is stored likewise, (p + 1) * pitch floats behind it. */
+void hairlut_blend_axis(const hairlut_axis *axis, float *memory, ptrdiff_t pitch, const hairlut_corners *corners);
+
+/* What the strands of a model choose from: its descriptors are valid, and known ones. */
+size_t hairlut_strands_floats(const hairlut_model_desc *desc);
+float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_desc *desc, float *memory);
+
+/* The number of the grid of these axes, new or one that there is. Its scales go to *memory, which moves to their end. */
+int hairlut_add_grid(hairlut_strands *strands, const hairlut_parameter_nodes *axes, int axis_count, float **memory);
+
+/* The corners of a grid around the standard values. */
+hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int grid);
+
+size_t hairlut_fours_floats(const hairlut_mixture_desc *desc, int lobe_count);
+void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *desc, int lobe_count, float *memory);
+
 hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lobe_count, char *message);
 size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count);
-void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *desc, int lobe_count, float *memory);
+
+/* At one point of the parameters: the corners around it, over the nodes of the mixture's axes. */
+void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *desc, int lobe_count,
+                           const hairlut_corners *corners, float *memory);
+
+/* A lobe's share of the sum, and its turn, at node `node` of the parameters, j of theta_r, o of the offset. */
+double hairlut_share_at(const hairlut_mixture_desc *desc, int lobe_count, int k, size_t node, int j, int o);
+double hairlut_turn_at(const hairlut_mixture_desc *desc, int k, size_t node, int j, int o);
+
+/* The arc by which a turn, in rad, differs from 0: [-pi, pi) */
+double hairlut_shorter_arc(double turn);
 
 #endif

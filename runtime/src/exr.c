@@ -116,8 +116,8 @@ static hairlut_result create(model_files *files, hairlut_model **out)
                                         phi ? phi->azimuth : HAIRLUT_AZIMUTH_DIFFERENCE};
         lobes[k] = desc;
     }
-    const hairlut_model_desc desc = {sizeof desc, files->mixture.lobe_count, lobes,
-                                     files->format == 1 ? NULL : &files->mixture.desc};
+    const hairlut_model_desc desc = {
+        sizeof desc, files->mixture.lobe_count, lobes, files->format == 1 ? NULL : &files->mixture.desc, 0, NULL};
     char detail[HAIRLUT_MESSAGE_SIZE];
     const hairlut_result result = hairlut_model_create(&desc, files->allocator, out, detail);
     if (result == HAIRLUT_OK)

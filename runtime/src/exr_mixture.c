@@ -192,8 +192,8 @@ static hairlut_result read_nodes(const hairlut_exr_file *file, const char *const
     if (result != HAIRLUT_OK)
         return result;
     sort_channels(texels, nodes, out->lobe_count, share, turn);
-    const hairlut_mixture_desc desc = {sizeof desc,    file->height, file->width, theta_r,
-                                       theta_r + rows, share,        turn,        out->desc.mirrored};
+    const hairlut_mixture_desc desc = {sizeof desc, file->height, file->width,        theta_r, theta_r + rows,
+                                       share,       turn,         out->desc.mirrored, 0,       NULL};
     out->desc = desc;
     return HAIRLUT_OK;
 }

@@ -130,6 +130,8 @@ struct hairlut_model {
     const hairlut_lobe *lobes;
     hairlut_mixture mixture;
     hairlut_allocator allocator; /* what hairlut_free gives the memory back to; zero for compiled-in models */
+    const struct hairlut_strands
+        *strands; /* strand.h; NULL: no parameters. All else is the model at their standard values */
 };
 
 typedef struct hairlut_builtin_entry {

@@ -29,23 +29,33 @@ typedef struct hairlut_drawn {
     float theta, phi, pdf;
 } hairlut_drawn;
 
+/* From places on a lobe's axes; where the azimuth is uniform, on that of theta_i. */
+HAIRLUT_INLINE hairlut_drawn hairlut_draw_uniform(const hairlut_placed *theta, float u_phi)
+{
+    const hairlut_draws two = hairlut_draw_two(theta, theta);
+    const float u = hairlut_clamp(u_phi, hairlut_constant(0.0f), hairlut_constant(1.0f));
+    const float phi = hairlut_two_pi * u - hairlut_pi;
+    const hairlut_drawn drawn = {hairlut_quad_first(two.x), phi < hairlut_pi ? phi : -hairlut_pi,
+                                 hairlut_inverse_two_pi / hairlut_quad_first(two.slope)};
+    return drawn;
+}
+
+HAIRLUT_INLINE hairlut_drawn hairlut_draw_both(const hairlut_placed *theta, const hairlut_placed *phi)
+{
+    const hairlut_draws two = hairlut_draw_two(theta, phi);
+    const float slope = hairlut_quad_first(two.slope) * hairlut_quad_second(two.slope);
+    const hairlut_drawn drawn = {hairlut_quad_first(two.x), hairlut_quad_second(two.x), 1.0f / slope};
+    return drawn;
+}
+
 HAIRLUT_INLINE hairlut_drawn hairlut_lobe_draw(const hairlut_lobe *lobe, float theta_r, float u_theta, float u_phi)
 {
     const hairlut_row row = hairlut_axis_row(&lobe->theta, theta_r);
     const hairlut_placed theta = hairlut_axis_find_place(&lobe->theta, row, u_theta);
-    if (lobe->uniform) {
-        const hairlut_draws two = hairlut_draw_two(&theta, &theta);
-        const float u = hairlut_clamp(u_phi, hairlut_constant(0.0f), hairlut_constant(1.0f));
-        const float phi = hairlut_two_pi * u - hairlut_pi;
-        const hairlut_drawn drawn = {hairlut_quad_first(two.x), phi < hairlut_pi ? phi : -hairlut_pi,
-                                     hairlut_inverse_two_pi / hairlut_quad_first(two.slope)};
-        return drawn;
-    }
+    if (lobe->uniform)
+        return hairlut_draw_uniform(&theta, u_phi);
     const hairlut_placed phi = hairlut_axis_find_place(&lobe->phi, hairlut_phi_row(lobe, theta_r, row), u_phi);
-    const hairlut_draws two = hairlut_draw_two(&theta, &phi);
-    const float slope = hairlut_quad_first(two.slope) * hairlut_quad_second(two.slope);
-    const hairlut_drawn drawn = {hairlut_quad_first(two.x), hairlut_quad_second(two.x), 1.0f / slope};
-    return drawn;
+    return hairlut_draw_both(&theta, &phi);
 }
 
 /* Searches that are under way, of the axes of some lobes: a lobe's theta, then its azimuth unless that is uniform. */

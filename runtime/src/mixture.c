@@ -24,42 +24,56 @@ static hairlut_result validate_nodes(const char *axis, const float *nodes, int c
     return HAIRLUT_OK;
 }
 
-/* Lobe k's number at node (j, o) */
-static size_t place(const hairlut_mixture_desc *desc, int k, int j, int o)
+/* Lobe k's number at node (j, o), at a node of the parameters */
+static size_t place(const hairlut_mixture_desc *desc, int k, size_t node, int j, int o)
 {
-    return ((size_t)k * (size_t)desc->theta_r_count + (size_t)j) * (size_t)desc->offset_count + (size_t)o;
+    const size_t row = ((size_t)k * hairlut_node_count(desc->axes, desc->axis_count) + node) * (size_t)desc->theta_r_count;
+    return (row + (size_t)j) * (size_t)desc->offset_count + (size_t)o;
 }
 
-static hairlut_result validate_node(const hairlut_mixture_desc *desc, int lobe_count, int j, int o, char *message)
+/* Where a number stands, in a message. */
+typedef struct node_name {
+    char text[96];
+} node_name;
+
+static node_name name_node(const hairlut_mixture_desc *desc, size_t node, int j, int o)
+{
+    node_name name;
+    if (desc->axis_count > 0)
+        snprintf(name.text, sizeof name.text, "node %zu of the axes, theta_r node %d, offset node %d", node, j, o);
+    else
+        snprintf(name.text, sizeof name.text, "theta_r node %d, offset node %d", j, o);
+    return name;
+}
+
+static hairlut_result validate_node(const hairlut_mixture_desc *desc, int lobe_count, size_t node, int j, int o,
+                                    char *message)
 {
     int shares = 0;
     for (int k = 0; k < lobe_count; ++k) {
-        const float share = desc->share ? desc->share[place(desc, k, j, o)] : 1.0f;
-        const float turn = desc->turn ? desc->turn[place(desc, k, j, o)] : 0.0f;
+        const float share = desc->share ? desc->share[place(desc, k, node, j, o)] : 1.0f;
+        const float turn = desc->turn ? desc->turn[place(desc, k, node, j, o)] : 0.0f;
         if (!(share >= 0.0f && hairlut_is_finite(share)))
             return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
-                                "mixture: share of lobe %d at theta_r node %d, offset node %d is %.9g: expected a finite "
-                                "number, not below 0",
-                                k, j, o, (double)share);
+                                "mixture: share of lobe %d at %s is %.9g: expected a finite number, not below 0", k,
+                                name_node(desc, node, j, o).text, (double)share);
         if (!(fabsf(turn) <= largest_turn))
-            return hairlut_fail(
-                HAIRLUT_ERROR_TABLE, message,
-                "mixture: turn of lobe %d at theta_r node %d, offset node %d is %.9g: expected -8 pi to 8 pi", k, j, o,
-                (double)turn);
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                                "mixture: turn of lobe %d at %s is %.9g: expected -8 pi to 8 pi", k,
+                                name_node(desc, node, j, o).text, (double)turn);
         shares += share > 0.0f;
     }
     if (shares == 0)
-        return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
-                            "mixture: the shares at theta_r node %d, offset node %d are all 0: expected one above 0", j, o);
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "mixture: the shares at %s are all 0: expected one above 0",
+                            name_node(desc, node, j, o).text);
     return HAIRLUT_OK;
 }
 
-hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lobe_count, char *message)
+static hairlut_result validate_extent(const hairlut_mixture_desc *desc, char *message)
 {
-    if (!desc)
-        return HAIRLUT_OK;
-    hairlut_result result = hairlut_check_size("hairlut_mixture_desc", desc->size, sizeof *desc, message);
-    if (result == HAIRLUT_OK && desc->mirrored != 0 && desc->mirrored != 1)
+    char detail[HAIRLUT_MESSAGE_SIZE];
+    hairlut_result result = HAIRLUT_OK;
+    if (desc->mirrored != 0 && desc->mirrored != 1)
         result = hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "mixture: mirrored is %d: expected 0 or 1", desc->mirrored);
     if (result == HAIRLUT_OK)
         result = validate_nodes("theta_r", desc->theta_r, desc->theta_r_count, -hairlut_two_pi, hairlut_two_pi, message);
@@ -68,36 +82,87 @@ hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lo
     if (result == HAIRLUT_OK && desc->theta_r_count * desc->offset_count > MAX_GRID)
         result = hairlut_fail(HAIRLUT_ERROR_TABLE, message, "mixture: %d x %d nodes: expected at most %d in all",
                               desc->theta_r_count, desc->offset_count, (int)MAX_GRID);
-    for (int j = 0; result == HAIRLUT_OK && j < desc->theta_r_count; ++j)
-        for (int o = 0; result == HAIRLUT_OK && o < desc->offset_count; ++o)
-            result = validate_node(desc, lobe_count, j, o, message);
+    if (result != HAIRLUT_OK)
+        return result;
+    result = hairlut_validate_axes(desc->axes, desc->axis_count, detail);
+    if (result != HAIRLUT_OK)
+        return hairlut_fail(result, message, "mixture: %.480s", detail);
+    const size_t nodes = hairlut_node_count(desc->axes, desc->axis_count);
+    if (nodes > (size_t)(MAX_GRID / (desc->theta_r_count * desc->offset_count)))
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                            "mixture: %zu nodes of the axes x %d x %d: expected at most %d in all", nodes,
+                            desc->theta_r_count, desc->offset_count, (int)MAX_GRID);
+    return HAIRLUT_OK;
+}
+
+hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lobe_count, char *message)
+{
+    hairlut_result result = validate_extent(desc, message);
+    const size_t nodes = result == HAIRLUT_OK ? hairlut_node_count(desc->axes, desc->axis_count) : 0;
+    for (size_t node = 0; node < nodes; ++node)
+        for (int j = 0; result == HAIRLUT_OK && j < desc->theta_r_count; ++j)
+            for (int o = 0; result == HAIRLUT_OK && o < desc->offset_count; ++o)
+                result = validate_node(desc, lobe_count, node, j, o, message);
     return result;
 }
 
 size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count)
 {
-    const size_t rows = desc ? (size_t)desc->theta_r_count : 1, columns = desc ? (size_t)desc->offset_count : 1;
+    const size_t rows = (size_t)desc->theta_r_count, columns = (size_t)desc->offset_count;
     return HAIRLUT_CORNER * rows * columns * (size_t)lobe_count + 2 * rows + 2 * columns;
 }
 
-/* wrap to [-pi, pi), in double: the arc from one turn to another is the shorter one also where floats are too coarse to decide */
-static double shorter_arc(double turn)
+/* In double: the arc from one turn to another is the shorter one also where floats are too coarse to decide. */
+double hairlut_shorter_arc(double turn)
 {
     static const double pi = 3.14159265358979323846;
     return turn - 2.0 * pi * floor((turn + pi) / (2.0 * pi));
 }
 
-static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lobe_count, int k, int j, int o)
+double hairlut_share_at(const hairlut_mixture_desc *desc, int lobe_count, int k, size_t node, int j, int o)
+{
+    double sum = 0.0;
+    if (!desc->share)
+        return 1.0 / lobe_count;
+    for (int l = 0; l < lobe_count; ++l)
+        sum += (double)desc->share[place(desc, l, node, j, o)];
+    return (double)desc->share[place(desc, k, node, j, o)] / sum;
+}
+
+double hairlut_turn_at(const hairlut_mixture_desc *desc, int k, size_t node, int j, int o)
+{
+    return desc->turn ? (double)desc->turn[place(desc, k, node, j, o)] : 0.0;
+}
+
+/* The blends over the corners. */
+static double blended_share(const hairlut_mixture_desc *desc, int lobe_count, const hairlut_corners *corners, int k, int j,
+                            int o)
+{
+    double sum = 0.0;
+    for (int c = 0; c < corners->count; ++c)
+        sum += (double)corners->weight[c] * hairlut_share_at(desc, lobe_count, k, (size_t)corners->node[c], j, o);
+    return sum;
+}
+
+static double blended_turn(const hairlut_mixture_desc *desc, const hairlut_corners *corners, int k, int j, int o)
+{
+    const double low = hairlut_turn_at(desc, k, (size_t)corners->node[0], j, o);
+    double turn = low;
+    for (int c = 1; c < corners->count; ++c) {
+        const double other = hairlut_turn_at(desc, k, (size_t)corners->node[c], j, o);
+        turn += (double)corners->weight[c] * hairlut_shorter_arc(other - low);
+    }
+    return turn;
+}
+
+static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lobe_count, const hairlut_corners *corners,
+                         int k, int j, int o)
 {
     const int above = j + 1 < desc->theta_r_count ? j + 1 : j;
-    double sum = 0.0;
-    for (int l = 0; l < lobe_count; ++l)
-        sum += desc->share ? (double)desc->share[place(desc, l, j, o)] : 1.0;
-    const double turn = desc->turn ? (double)desc->turn[place(desc, k, j, o)] : 0.0;
-    const double next = desc->turn ? (double)desc->turn[place(desc, k, above, o)] : 0.0;
-    stored[0] = (float)((desc->share ? (double)desc->share[place(desc, k, j, o)] : 1.0) / sum);
-    stored[1] = hairlut_wrap((float)shorter_arc(turn), -hairlut_pi);
-    stored[2] = (float)shorter_arc(next - turn);
+    const double turn = blended_turn(desc, corners, k, j, o), next = blended_turn(desc, corners, k, above, o);
+    stored[0] = (float)blended_share(desc, lobe_count, corners, k, j, o);
+    stored[1] = hairlut_wrap((float)hairlut_shorter_arc(turn), -hairlut_pi);
+    stored[2] = (float)hairlut_shorter_arc(next - turn);
 }
 
 /* The weights of a node: hairlut_mixture_at's where there is no other node. */
@@ -121,10 +186,9 @@ static void store_nodes(float *stored, const float *nodes, int count, int is_off
     }
 }
 
-void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *desc, int lobe_count, float *memory)
+void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *d, int lobe_count,
+                           const hairlut_corners *corners, float *memory)
 {
-    const hairlut_mixture_desc plain = {sizeof plain, 1, 1, NULL, NULL, NULL, NULL, 0};
-    const hairlut_mixture_desc *d = desc ? desc : &plain;
     float *corner = memory,
           *theta_r = memory + hairlut_mixture_floats(d, lobe_count) - 2 * (d->theta_r_count + d->offset_count);
     float *arc = theta_r + 2 * d->theta_r_count;
@@ -140,7 +204,7 @@ void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc 
     for (int j = 0; j < d->theta_r_count; ++j)
         for (int o = 0; o < d->offset_count; ++o, corner += HAIRLUT_CORNER * lobe_count) {
             for (int k = 0; k < lobe_count; ++k) {
-                store_corner(corner + HAIRLUT_CORNER * k, d, lobe_count, k, j, o);
+                store_corner(corner + HAIRLUT_CORNER * k, d, lobe_count, corners, k, j, o);
                 mixture->turned |= corner[HAIRLUT_CORNER * k + 1] != 0.0f;
             }
             store_weights(corner, lobe_count);

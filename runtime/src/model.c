@@ -7,8 +7,6 @@
 #include "angle.h"
 #include "build.h"
 
-enum { MOST_TABLES = 2 * HAIRLUT_MAX_LOBES };
-
 int hairlut_version(void)
 {
     return HAIRLUT_VERSION;
@@ -43,7 +41,7 @@ static const hairlut_lobe_desc *lobe_at(const hairlut_model_desc *desc, int k)
     return (const hairlut_lobe_desc *)((const char *)desc->lobes + (size_t)k * desc->lobes->size);
 }
 
-static int is_name(const char *name)
+int hairlut_is_name(const char *name)
 {
     size_t length = 0;
     for (; name[length] && length < HAIRLUT_NAME_SIZE; ++length) {
@@ -55,10 +53,10 @@ static int is_name(const char *name)
     return length > 0 && length < HAIRLUT_NAME_SIZE;
 }
 
-static hairlut_result validate_table(const hairlut_lobe_desc *lobe, const char *angle, const hairlut_table *t, float low,
-                                     float high, char *message)
+static hairlut_result validate_table(const hairlut_model_desc *desc, const hairlut_lobe_desc *lobe, const char *angle,
+                                     const hairlut_table *t, float low, float high, char *message)
 {
-    char detail[HAIRLUT_MESSAGE_SIZE];
+    char detail[HAIRLUT_MESSAGE_SIZE], owner[HAIRLUT_NAME_SIZE + 8];
     const hairlut_result result = hairlut_validate(t, detail);
     if (result != HAIRLUT_OK)
         return hairlut_fail(result, message, "%s_%s: %.460s", lobe->name, angle, detail);
@@ -66,16 +64,18 @@ static hairlut_result validate_table(const hairlut_lobe_desc *lobe, const char *
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
                             "%s_%s: domain %.9g to %.9g: expected to lie within %.9g to %.9g", lobe->name, angle,
                             (double)t->domain_min, (double)t->domain_max, (double)low, (double)high);
-    return HAIRLUT_OK;
+    const hairlut_table known = hairlut_known_table(t);
+    snprintf(owner, sizeof owner, "%s_%s", lobe->name, angle);
+    return hairlut_match_axes(owner, known.axes, known.axis_count, desc, message);
 }
 
 static hairlut_result validate_lobe(const hairlut_model_desc *desc, int k, char *message)
 {
     const hairlut_lobe_desc *lobe = lobe_at(desc, k);
-    hairlut_result result = hairlut_check_size("hairlut_lobe_desc", lobe->size, desc->lobes->size, message);
+    hairlut_result result = hairlut_check_size("hairlut_lobe_desc", lobe->size, desc->lobes->size, 0, message);
     if (result != HAIRLUT_OK)
         return result;
-    if (!lobe->name || !is_name(lobe->name))
+    if (!lobe->name || !hairlut_is_name(lobe->name))
         return hairlut_fail(
             HAIRLUT_ERROR_ARGUMENT, message, "lobe %d: name is %s%.40s%s: expected [a-z][a-z0-9_]*, at most %d characters",
             k, lobe->name ? "'" : "", lobe->name ? lobe->name : "NULL", lobe->name ? "'" : "", HAIRLUT_NAME_SIZE - 1);
@@ -83,9 +83,9 @@ static hairlut_result validate_lobe(const hairlut_model_desc *desc, int k, char 
         if (strcmp(lobe_at(desc, l)->name, lobe->name) == 0)
             return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
                                 "lobes %d and %d are both named '%s': expected names that differ", l, k, lobe->name);
-    result = validate_table(lobe, "theta", lobe->theta, -hairlut_half_pi_high, hairlut_half_pi_high, message);
+    result = validate_table(desc, lobe, "theta", lobe->theta, -hairlut_half_pi_high, hairlut_half_pi_high, message);
     if (result == HAIRLUT_OK && lobe->phi)
-        result = validate_table(lobe, "phi", lobe->phi, 0.0f, hairlut_two_pi, message);
+        result = validate_table(desc, lobe, "phi", lobe->phi, 0.0f, hairlut_two_pi, message);
     if (result == HAIRLUT_OK && lobe->phi && lobe->azimuth != HAIRLUT_AZIMUTH_SUM &&
         lobe->azimuth != HAIRLUT_AZIMUTH_DIFFERENCE)
         result = hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message,
@@ -94,38 +94,63 @@ static hairlut_result validate_lobe(const hairlut_model_desc *desc, int k, char 
     return result;
 }
 
-static hairlut_result validate_model(const hairlut_model_desc *desc, char *message)
+static hairlut_result validate_sizes(const hairlut_model_desc *desc, char *message)
 {
     if (!desc)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "desc is NULL");
-    hairlut_result result = hairlut_check_size("hairlut_model_desc", desc->size, sizeof *desc, message);
-    if (result != HAIRLUT_OK)
+    const hairlut_result result =
+        hairlut_check_size("hairlut_model_desc", desc->size, sizeof *desc, sizeof(hairlut_model_desc_2_0), message);
+    if (result != HAIRLUT_OK || !desc->mixture)
         return result;
+    return hairlut_check_size("hairlut_mixture_desc", desc->mixture->size, sizeof *desc->mixture,
+                              sizeof(hairlut_mixture_desc_2_0), message);
+}
+
+static hairlut_result validate_lobes(const hairlut_model_desc *desc, char *message)
+{
     if (desc->lobe_count < 1 || desc->lobe_count > HAIRLUT_MAX_LOBES)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "lobe_count is %d: expected 1 to %d", desc->lobe_count,
                             HAIRLUT_MAX_LOBES);
     if (!desc->lobes)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "lobes is NULL: expected %d descriptors", desc->lobe_count);
-    result = hairlut_check_size("hairlut_lobe_desc", desc->lobes->size, sizeof *desc->lobes, message);
+    hairlut_result result = hairlut_check_size("hairlut_lobe_desc", desc->lobes->size, sizeof *desc->lobes, 0, message);
     for (int k = 0; k < desc->lobe_count && result == HAIRLUT_OK; ++k)
         result = validate_lobe(desc, k, message);
-    return result == HAIRLUT_OK ? hairlut_validate_mixture(desc->mixture, desc->lobe_count, message) : result;
+    return result;
 }
 
-/* The tables of a model, each once, and the axis that was built from it. */
+/* The descriptors of lobes and mixture are known ones. */
+static hairlut_result validate_model(const hairlut_model_desc *desc, char *message)
+{
+    hairlut_result result = hairlut_validate_parameters(desc, message);
+    if (result == HAIRLUT_OK)
+        result = validate_lobes(desc, message);
+    if (result == HAIRLUT_OK)
+        result = hairlut_validate_mixture(desc->mixture, desc->lobe_count, message);
+    return result == HAIRLUT_OK
+               ? hairlut_match_axes("mixture", desc->mixture->axes, desc->mixture->axis_count, desc, message)
+               : result;
+}
+
+/* The tables of a model, each once, the axis that was built from it, and its nodes. */
 typedef struct table_list {
-    const hairlut_table *tables[MOST_TABLES];
-    hairlut_axis axes[MOST_TABLES];
+    const hairlut_table *given[HAIRLUT_MOST_TABLES];
+    hairlut_table tables[HAIRLUT_MOST_TABLES];
+    hairlut_axis axes[HAIRLUT_MOST_TABLES];
+    hairlut_varied varied[HAIRLUT_MOST_TABLES];
     int count;
 } table_list;
 
 static int index_of(table_list *list, const hairlut_table *table)
 {
     int k = 0;
-    while (k < list->count && list->tables[k] != table)
+    while (k < list->count && list->given[k] != table)
         ++k;
-    if (k == list->count)
-        list->tables[list->count++] = table;
+    if (k == list->count) {
+        list->tables[k] = hairlut_known_table(table);
+        list->given[k] = table;
+        list->count = k + 1;
+    }
     return k;
 }
 
@@ -165,27 +190,83 @@ static void build_lobe(hairlut_lobe *lobe, const hairlut_lobe_desc *desc, table_
 
 static const size_t line = HAIRLUT_LINE * sizeof(float);
 
-/* One block: the struct, its lobes, the mixture, then the tables from the next cache line on. */
-static size_t bytes_of(const hairlut_model_desc *desc, const table_list *list)
+/* Tables of a table with axes: one for each node, and that of the standard values before them. */
+static size_t tables_of(const hairlut_table *table)
 {
-    size_t floats = hairlut_mixture_floats(desc->mixture, desc->lobe_count);
+    return table->axis_count > 0 ? hairlut_node_count(table->axes, table->axis_count) + 1 : 1;
+}
+
+/* One block: the struct, its strands, its lobes, the mixture, what the strands choose from, then the tables from the next cache
+ * line on. In double, as a size_t of 32 bits may not have room for the nodes of many tables. */
+static double bytes_of(const hairlut_model_desc *desc, const table_list *list)
+{
+    double floats = (double)hairlut_mixture_floats(desc->mixture, desc->lobe_count);
+    if (desc->parameter_count > 0)
+        floats += (double)sizeof(hairlut_strands) / sizeof(float) + (double)hairlut_strands_floats(desc) +
+                  (double)hairlut_fours_floats(desc->mixture, desc->lobe_count);
     for (int k = 0; k < list->count; ++k)
-        floats += hairlut_table_floats(list->tables[k]);
-    return sizeof(hairlut_model) + (size_t)desc->lobe_count * sizeof(hairlut_lobe) + line + floats * sizeof(float);
+        floats += (double)hairlut_table_floats(&list->tables[k]) * (double)tables_of(&list->tables[k]);
+    return (double)(sizeof(hairlut_model) + (size_t)desc->lobe_count * sizeof(hairlut_lobe) + line) + floats * sizeof(float);
+}
+
+/* The axis of a table; with axes over parameters, those of its nodes, and their blend. Returns the end of what was filled. */
+static float *build_table(table_list *list, int k, const hairlut_strands *strands, float *memory)
+{
+    const hairlut_table *table = &list->tables[k];
+    const size_t floats = hairlut_table_floats(table), count = tables_of(table);
+    const size_t texels = 2 * (size_t)table->width * (size_t)table->height;
+    hairlut_table node = *table;
+    for (size_t p = 0; p + 1 < count; ++p) {
+        node.texels = table->texels + p * texels;
+        hairlut_build_axis(&list->axes[k], &node, memory + (p + 1) * floats);
+    }
+    hairlut_build_axis(&list->axes[k], table, memory);
+    if (count > 1) {
+        const hairlut_corners corners = hairlut_standard_corners(strands, list->varied[k].grid);
+        hairlut_blend_axis(&list->axes[k], memory, (ptrdiff_t)floats, &corners);
+    }
+    return memory + count * floats;
+}
+
+/* Parameters, grids of nodes, and the mixture at them. Returns the end of what was filled. */
+static float *build_strands(hairlut_strands *strands, const hairlut_model_desc *desc, table_list *list, float *memory)
+{
+    float *next = hairlut_build_parameters(strands, desc, memory), *fours;
+    for (int k = 0; k < list->count; ++k) {
+        const hairlut_table *table = &list->tables[k];
+        list->varied[k].grid = hairlut_add_grid(strands, table->axes, table->axis_count, &next);
+        list->varied[k].pitch = table->axis_count > 0 ? (ptrdiff_t)hairlut_table_floats(table) : 0;
+    }
+    strands->mixture_grid = hairlut_add_grid(strands, desc->mixture->axes, desc->mixture->axis_count, &next);
+    for (int k = 0; k < desc->lobe_count; ++k) {
+        const hairlut_lobe_desc *lobe = lobe_at(desc, k);
+        strands->theta[k] = list->varied[index_of(list, lobe->theta)];
+        strands->phi[k] = list->varied[index_of(list, lobe->phi ? lobe->phi : lobe->theta)];
+    }
+    fours = memory + hairlut_strands_floats(desc);
+    hairlut_build_fours(strands, desc->mixture, desc->lobe_count, fours);
+    return fours + hairlut_fours_floats(desc->mixture, desc->lobe_count);
 }
 
 static void build_model(hairlut_model *model, const hairlut_model_desc *desc, table_list *list)
 {
-    hairlut_lobe *lobes = (hairlut_lobe *)(model + 1);
+    hairlut_strands *strands = desc->parameter_count > 0 ? (hairlut_strands *)(model + 1) : NULL;
+    hairlut_lobe *lobes = strands ? (hairlut_lobe *)(strands + 1) : (hairlut_lobe *)(model + 1);
     float *mixture = (float *)(lobes + desc->lobe_count);
     float *next = mixture + hairlut_mixture_floats(desc->mixture, desc->lobe_count);
+    hairlut_corners corners = {1, {0}, {1.0f}};
+    if (strands) {
+        next = build_strands(strands, desc, list, next);
+        corners = hairlut_standard_corners(strands, strands->mixture_grid);
+    }
     next += (line - (uintptr_t)next % line) % line / sizeof(float);
     for (int k = 0; k < list->count; ++k)
-        next = hairlut_build_axis(&list->axes[k], list->tables[k], next);
+        next = build_table(list, k, strands, next);
     number_grids(list);
     for (int k = 0; k < desc->lobe_count; ++k)
         build_lobe(&lobes[k], lobe_at(desc, k), list);
-    hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, mixture);
+    hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, &corners, mixture);
+    model->strands = strands;
     model->lobe_count = desc->lobe_count;
     model->lobes = lobes;
     model->direct = hairlut_lobe_index(model, "direct");
@@ -199,19 +280,29 @@ hairlut_result hairlut_model_create(const hairlut_model_desc *desc, const hairlu
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "out is NULL");
     *out = NULL;
     hairlut_allocator a;
-    hairlut_result result = validate_model(desc, message);
+    hairlut_result result = validate_sizes(desc, message);
+    if (result != HAIRLUT_OK)
+        return result;
+    hairlut_model_desc known = hairlut_known_model(desc);
+    const hairlut_mixture_desc mixture = hairlut_known_mixture(desc->mixture);
+    known.mixture = &mixture;
+    result = validate_model(&known, message);
     if (result == HAIRLUT_OK)
         result = hairlut_choose_allocator(allocator, &a, message);
     if (result != HAIRLUT_OK)
         return result;
     table_list list;
     void *memory;
-    list_tables(&list, desc);
-    result = hairlut_allocate(&a, bytes_of(desc, &list), &memory, message);
+    list_tables(&list, &known);
+    const double bytes = bytes_of(&known, &list);
+    if (bytes > (double)(SIZE_MAX / 4))
+        return hairlut_fail(HAIRLUT_ERROR_MEMORY, message, "the model takes %.0f bytes: more than this system addresses",
+                            bytes);
+    result = hairlut_allocate(&a, (size_t)bytes, &memory, message);
     if (result != HAIRLUT_OK)
         return result;
     *out = memory;
-    build_model(*out, desc, &list);
+    build_model(*out, &known, &list);
     (*out)->allocator = a;
     return HAIRLUT_OK;
 }

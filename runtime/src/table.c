@@ -6,7 +6,7 @@
 #include "build.h"
 #include "warp.h"
 
-enum { MAX_SIDE = 4096, TEXEL = 2 /* floats: an angle and dx/du */ };
+enum { MAX_SIDE = 4096, MAX_ROWS = 65536 /* of all nodes */, TEXEL = 2 /* floats: an angle and dx/du */ };
 
 /* No cell is narrower: the product of two axes' densities and of 1/cos at the pole stays a float. */
 static const float narrowest_cell = 1e-12f;
@@ -34,7 +34,22 @@ static hairlut_result validate_numbers(const hairlut_table *t, char *message)
                             "warp is %d: expected HAIRLUT_WARP_UNIFORM or HAIRLUT_WARP_OCTAVES", (int)t->warp);
     if (t->warp == HAIRLUT_WARP_OCTAVES && !(t->warp_e >= 1e-12f && t->warp_e <= 1.0f))
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "warp_e is %g: expected 1e-12 to 1", (double)t->warp_e);
-    return HAIRLUT_OK;
+    return hairlut_validate_axes(t->axes, t->axis_count, message);
+}
+
+/* Where row j of all stands, in a message. */
+typedef struct row_name {
+    char text[48];
+} row_name;
+
+static row_name name_row(const hairlut_table *t, int j)
+{
+    row_name name;
+    if (t->axis_count > 0)
+        snprintf(name.text, sizeof name.text, "node %d of the axes, row %d", j / t->height, j % t->height);
+    else
+        snprintf(name.text, sizeof name.text, "row %d", j);
+    return name;
 }
 
 static hairlut_result validate_row(const hairlut_table *t, int j, char *message)
@@ -44,16 +59,18 @@ static hairlut_result validate_row(const hairlut_table *t, int j, char *message)
     for (int i = 0; i + 1 < t->width; ++i)
         if (!(row[(i + 1) * TEXEL] - row[i * TEXEL] >= narrowest_cell))
             return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
-                                "row %d, columns %d and %d: %.9g, %.9g: expected angles that increase by at least %g", j, i,
-                                i + 1, (double)row[i * TEXEL], (double)row[(i + 1) * TEXEL], (double)narrowest_cell);
+                                "%s, columns %d and %d: %.9g, %.9g: expected angles that increase by at least %g",
+                                name_row(t, j).text, i, i + 1, (double)row[i * TEXEL], (double)row[(i + 1) * TEXEL],
+                                (double)narrowest_cell);
     if (first != t->domain_min || last != t->domain_max)
         return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
-                            "row %d runs from %.9g to %.9g: expected the whole domain, %.9g to %.9g", j, (double)first,
-                            (double)last, (double)t->domain_min, (double)t->domain_max);
+                            "%s runs from %.9g to %.9g: expected the whole domain, %.9g to %.9g", name_row(t, j).text,
+                            (double)first, (double)last, (double)t->domain_min, (double)t->domain_max);
     for (int i = 0; i < t->width; ++i)
         if (!(row[i * TEXEL + 1] >= least_slope && row[i * TEXEL + 1] <= largest_slope))
-            return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "row %d, column %d: dx/du is %.9g: expected %g to %g rad", j,
-                                i, (double)row[i * TEXEL + 1], (double)least_slope, (double)largest_slope);
+            return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "%s, column %d: dx/du is %.9g: expected %g to %g rad",
+                                name_row(t, j).text, i, (double)row[i * TEXEL + 1], (double)least_slope,
+                                (double)largest_slope);
     return HAIRLUT_OK;
 }
 
@@ -61,11 +78,20 @@ hairlut_result hairlut_validate(const hairlut_table *table, char *message)
 {
     if (!table)
         return hairlut_fail(HAIRLUT_ERROR_ARGUMENT, message, "table is NULL");
-    hairlut_result result = hairlut_check_size("hairlut_table", table->size, sizeof *table, message);
-    if (result == HAIRLUT_OK)
-        result = validate_numbers(table, message);
-    for (int j = 0; result == HAIRLUT_OK && j < table->height; ++j)
-        result = validate_row(table, j, message);
+    hairlut_result result =
+        hairlut_check_size("hairlut_table", table->size, sizeof *table, sizeof(hairlut_table_2_0), message);
+    if (result != HAIRLUT_OK)
+        return result;
+    const hairlut_table known = hairlut_known_table(table);
+    result = validate_numbers(&known, message);
+    if (result != HAIRLUT_OK)
+        return result;
+    const size_t nodes = hairlut_node_count(known.axes, known.axis_count);
+    if (known.axis_count > 0 && nodes > (size_t)(MAX_ROWS / known.height))
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "%zu nodes of the axes, of %d rows each: expected at most %d rows",
+                            nodes, known.height, (int)MAX_ROWS);
+    for (int j = 0; result == HAIRLUT_OK && j < (int)nodes * known.height; ++j)
+        result = validate_row(&known, j, message);
     return result;
 }
 
@@ -184,7 +210,7 @@ static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *s
     return axis;
 }
 
-float *hairlut_build_axis(hairlut_axis *axis, const hairlut_table *t, float *memory)
+void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *t, float *memory)
 {
     float *rows = memory, *cells = rows + rows_floats(t), *columns = cells + cells_floats(t);
     const hairlut_warp_scale scale = hairlut_scale_warp(t->warp, t->warp_e, t->width);
@@ -204,5 +230,22 @@ float *hairlut_build_axis(hairlut_axis *axis, const hairlut_table *t, float *mem
         store_row(rows + (size_t)j * (size_t)axis->stride, row, above, t->width);
         store_cells(axis, cells, j, row, knots);
     }
-    return columns + knots_floats(t);
+}
+
+/* All that is stored is linear in the texels but for the bounds of slopes, which are those of the nodes' own cells. */
+static void blend_floats(float *blend, size_t count, ptrdiff_t pitch, const hairlut_corners *corners)
+{
+    for (size_t k = 0; k < count; ++k) {
+        double sum = 0.0;
+        for (int c = 0; c < corners->count; ++c)
+            sum += (double)corners->weight[c] * (double)blend[k + (size_t)((corners->node[c] + 1) * pitch)];
+        if (blend[k] != HAIRLUT_NO_TEXEL)
+            blend[k] = (float)sum;
+    }
+}
+
+void hairlut_blend_axis(const hairlut_axis *axis, float *memory, ptrdiff_t pitch, const hairlut_corners *corners)
+{
+    blend_floats(memory, (size_t)HAIRLUT_STORED(axis->columns, axis->height), pitch, corners);
+    blend_floats(memory + (axis->ends[0] - axis->rows), (size_t)HAIRLUT_CELLS(axis->columns, axis->height), pitch, corners);
 }

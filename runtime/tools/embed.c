@@ -161,6 +161,10 @@ int main(int argc, char **argv)
             fprintf(stderr, "embed: %s\n", message);
             return 1;
         }
+        if (hairlut_parameter_count(models[k]) > 0) {
+            fprintf(stderr, "embed: %s: depends on parameters: expected a model without\n", argv[k]);
+            return 1;
+        }
     }
     fputs("/* SPDX-License-Identifier: BSD-3-Clause */\n/* By runtime/tools/embed.c from", stdout);
     for (int k = 1; k < argc; ++k)

@@ -88,6 +88,8 @@ static inline hairlut_table take_table(reader *r, float *texels, int is_phi, int
     t.domain_max = flags & 2 ? take_float(r) : is_phi ? 6.28318548f : 1.57079637f;
     t.warp = flags & 4 ? (hairlut_warp)(take_byte(r) % 3) : (hairlut_warp)(take_byte(r) % 2);
     t.warp_e = flags & 4 ? take_float(r) : ldexpf(1.0f, -(take_byte(r) % 39));
+    t.axis_count = 0;
+    t.axes = NULL;
     for (int j = 0; j < t.height && t.width > 1; ++j) {
         if (flags & 8)
             take(r, texels + 2 * j * t.width, 2 * sizeof(float) * (size_t)t.width);
@@ -131,9 +133,10 @@ static inline void describe(reader *r, described *d, int flags)
         d->share[k] = flags & 32 ? take_float(r) : (float)(1 + take_byte(r));
         d->turn[k] = flags & 32 ? take_float(r) : take_between(r, -25.0f, 25.0f);
     }
-    const hairlut_mixture_desc mixture = {sizeof mixture, rows, columns, d->theta_r, d->offset, d->share, d->turn, mirrored};
+    const hairlut_mixture_desc mixture = {sizeof mixture, rows,    columns,  d->theta_r, d->offset,
+                                          d->share,       d->turn, mirrored, 0,          NULL};
     d->mixture = mixture;
-    const hairlut_model_desc desc = {sizeof desc, lobes, d->lobes, &d->mixture};
+    const hairlut_model_desc desc = {sizeof desc, lobes, d->lobes, &d->mixture, 0, NULL};
     d->desc = desc;
 }
 

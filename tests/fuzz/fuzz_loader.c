@@ -41,8 +41,8 @@ static int mentions(const blob *b, const char *word)
 
 static const float theta[16] = {-1.57079637f, 1.0f, -0.5f, 1.0f, 0.5f, 1.0f, 1.57079637f, 1.0f,
                                 -1.57079637f, 1.0f, -0.5f, 1.0f, 0.5f, 1.0f, 1.57079637f, 1.0f};
-static const hairlut_table straight = {sizeof straight,      theta, 4, 2, -1.5f, 1.5f, -1.57079637f, 1.57079637f,
-                                       HAIRLUT_WARP_OCTAVES, 1e-6f};
+static const hairlut_table straight = {sizeof straight,      theta, 4, 2,   -1.5f, 1.5f, -1.57079637f, 1.57079637f,
+                                       HAIRLUT_WARP_OCTAVES, 1e-6f, 0, NULL};
 
 /* A model of these lobes: tables that were accepted give one; a mixture's shares and turns are checked here. */
 static void use(const hairlut_model_desc *desc, int is_mixture)
@@ -68,7 +68,7 @@ static hairlut_result load_table(const blob *file, const exr_context_initializer
     if (result == HAIRLUT_OK) {
         const hairlut_lobe_desc lobe = {sizeof lobe, "lobe", is_azimuth ? &straight : &table.table,
                                         is_azimuth ? &table.table : NULL, table.azimuth};
-        const hairlut_model_desc desc = {sizeof desc, 1, &lobe, NULL};
+        const hairlut_model_desc desc = {sizeof desc, 1, &lobe, NULL, 0, NULL};
         use(&desc, 0);
     }
     hairlut_release(allocator, table.texels);
@@ -86,7 +86,7 @@ static hairlut_result load_mixture(const exr_context_initializer_t *source, cons
         lobes[k] = lobe;
     }
     if (result == HAIRLUT_OK) {
-        const hairlut_model_desc desc = {sizeof desc, mixture.lobe_count, lobes, &mixture.desc};
+        const hairlut_model_desc desc = {sizeof desc, mixture.lobe_count, lobes, &mixture.desc, 0, NULL};
         use(&desc, 1);
     }
     hairlut_release(allocator, mixture.memory);

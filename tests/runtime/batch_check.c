@@ -150,11 +150,18 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp)
     const size_t nodes = (size_t)(s->rows * s->columns * s->lobes), first = (size_t)(s->rows * s->columns);
     for (int k = 0; k < 2 * s->lobes; ++k) {
         const float low = k % 2 ? 0.0f : -half_pi, high = k % 2 ? two_pi : half_pi;
-        const hairlut_table table = {sizeof table, make_texels(s->width, s->height, low, high),
-                                     s->width,     s->height,
-                                     -half_pi,     half_pi,
-                                     low,          high,
-                                     warp,         1.0f / 262144.0f};
+        const hairlut_table table = {sizeof table,
+                                     make_texels(s->width, s->height, low, high),
+                                     s->width,
+                                     s->height,
+                                     -half_pi,
+                                     half_pi,
+                                     low,
+                                     high,
+                                     warp,
+                                     1.0f / 262144.0f,
+                                     0,
+                                     NULL};
         tables[k] = table;
     }
     for (int k = 0; k < s->lobes; ++k) {
@@ -167,9 +174,9 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp)
     float *share = make_floats(nodes, 0.1f, 2.0f, s->zero), *turn = make_floats(nodes, -20.0f, 20.0f, 0.0f);
     for (size_t k = 0; k < first; ++k)
         share[k] += 0.01f; /* one lobe has a share everywhere */
-    const hairlut_mixture_desc mixture = {sizeof mixture,          s->rows,    s->columns, theta_r, offset, share,
-                                          s->turned ? turn : NULL, s->mirrored};
-    const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture};
+    const hairlut_mixture_desc mixture = {sizeof mixture,          s->rows,     s->columns, theta_r, offset, share,
+                                          s->turned ? turn : NULL, s->mirrored, 0,          NULL};
+    const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture, 0, NULL};
     hairlut_model *model = NULL;
     char message[HAIRLUT_MESSAGE_SIZE];
     if (hairlut_model_create(&desc, NULL, &model, message) != HAIRLUT_OK) {

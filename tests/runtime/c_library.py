@@ -79,6 +79,8 @@ def core() -> ctypes.CDLL:
     library.hairlut_result_string.restype = ctypes.c_char_p
     library.hairlut_lobe_name.restype = ctypes.c_char_p
     library.hairlut_lobe_name.argtypes = [ctypes.c_void_p, ctypes.c_int]
+    library.hairlut_parameter_name.restype = ctypes.c_char_p
+    library.hairlut_parameter_name.argtypes = [ctypes.c_void_p, ctypes.c_int]
     library.hairlut_pdf_to_solid_angle.restype = ctypes.c_float
     library.hairlut_pdf_to_solid_angle.argtypes = [ctypes.c_float, ctypes.c_float]
     return library
@@ -176,6 +178,38 @@ class Model:
         out = np.empty_like(inputs[0])
         self._loop("loop_pdf_hair", (self._shares(shares, inputs[0]),), *inputs, out)
         return out
+
+    def sample_strand(
+        self, parameters, theta_r, phi_r, u_lobe, u_theta, u_phi, offset=0.0, shares=None
+    ) -> np.ndarray:
+        """Records of SAMPLE. parameters: None, or (..., parameters), which broadcasts; shares as in
+        sample_hair."""
+        inputs = _floats(theta_r, phi_r, offset, u_lobe, u_theta, u_phi)
+        out = np.empty(inputs[0].shape, SAMPLE)
+        which = self._parameters(parameters, inputs[0]), self._shares(shares, inputs[0])
+        self._loop("loop_sample_strand", which, *inputs, out)
+        return out
+
+    def pdf_strand(self, parameters, theta_r, phi_r, theta_i, phi_i, offset=0.0, shares=None) -> np.ndarray:
+        """Densities per rad^2; parameters and shares as in sample_strand."""
+        inputs = _floats(theta_r, phi_r, offset, theta_i, phi_i)
+        out = np.empty_like(inputs[0])
+        which = self._parameters(parameters, inputs[0]), self._shares(shares, inputs[0])
+        self._loop("loop_pdf_strand", which, *inputs, out)
+        return out
+
+    @property
+    def parameters(self) -> list[str]:
+        """The parameters' names, in order."""
+        count = core().hairlut_parameter_count(self.pointer)
+        return [core().hairlut_parameter_name(self.pointer, p).decode() for p in range(count)]
+
+    def _parameters(self, parameters, like: np.ndarray):
+        if parameters is None:
+            return None
+        shape = *like.shape, len(self.parameters)
+        self._strands = np.array(np.broadcast_to(np.asarray(parameters, np.float32), shape), order="C")
+        return self._strands.ctypes.data_as(ctypes.c_void_p)
 
     def _shares(self, shares, like: np.ndarray):
         if shares is None:

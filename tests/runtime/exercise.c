@@ -101,7 +101,7 @@ static hairlut_table straight(float *texels, int width, float low, float high, h
         texels[2 * k] = k % width == width - 1 ? high : low + (high - low) * (float)(k % width) / (float)(width - 1);
         texels[2 * k + 1] = (high - low) * (k % 5 ? 1.0f : 100.0f);
     }
-    const hairlut_table table = {sizeof table, texels, width, HEIGHT, -1.5f, 1.5f, low, high, warp, 1e-6f};
+    const hairlut_table table = {sizeof table, texels, width, HEIGHT, -1.5f, 1.5f, low, high, warp, 1e-6f, 0, NULL};
     return table;
 }
 
@@ -118,9 +118,10 @@ static void set_scene(scene *s, int width, hairlut_warp warp, hairlut_azimuth az
         s->share[k] = (float)(k % 4), s->turn[k] = (float)k - 6.0f;
     s->theta_r[0] = -1.0f, s->theta_r[1] = 1.0f, s->offset[0] = 0.0f, s->offset[1] = 1.0f;
     s->share[0] = 1.0f;
-    const hairlut_mixture_desc mixture = {sizeof mixture, ROWS, COLUMNS, s->theta_r, s->offset, s->share, s->turn, 1};
+    const hairlut_mixture_desc mixture = {sizeof mixture, ROWS,    COLUMNS, s->theta_r, s->offset,
+                                          s->share,       s->turn, 1,       0,          NULL};
     s->mixture = mixture;
-    const hairlut_model_desc desc = {sizeof desc, LOBES, s->lobes, &s->mixture};
+    const hairlut_model_desc desc = {sizeof desc, LOBES, s->lobes, &s->mixture, 0, NULL};
     s->desc = desc;
 }
 

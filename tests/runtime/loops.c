@@ -52,6 +52,30 @@ LOOP void loop_pdf_hair(const hairlut_model *model, const float *shares, size_t 
         pdf[i] = hairlut_pdf_hair(model, shares_of(model, shares, i), theta_r[i], phi_r[i], offset[i], theta_i[i], phi_i[i]);
 }
 
+/* parameters: NULL, or parameter_count numbers for each i, side by side */
+static const float *parameters_of(const hairlut_model *model, const float *parameters, size_t i)
+{
+    return parameters ? parameters + i * (size_t)hairlut_parameter_count(model) : NULL;
+}
+
+LOOP void loop_sample_strand(const hairlut_model *model, const float *parameters, const float *shares, size_t n,
+                             const float *theta_r, const float *phi_r, const float *offset, const float *u_lobe,
+                             const float *u_theta, const float *u_phi, hairlut_sample *out)
+{
+    for (size_t i = 0; i < n; ++i)
+        out[i] = hairlut_sample_strand(model, parameters_of(model, parameters, i), shares_of(model, shares, i), theta_r[i],
+                                       phi_r[i], offset[i], u_lobe[i], u_theta[i], u_phi[i]);
+}
+
+LOOP void loop_pdf_strand(const hairlut_model *model, const float *parameters, const float *shares, size_t n,
+                          const float *theta_r, const float *phi_r, const float *offset, const float *theta_i,
+                          const float *phi_i, float *pdf)
+{
+    for (size_t i = 0; i < n; ++i)
+        pdf[i] = hairlut_pdf_strand(model, parameters_of(model, parameters, i), shares_of(model, shares, i), theta_r[i],
+                                    phi_r[i], offset[i], theta_i[i], phi_i[i]);
+}
+
 static const hairlut_axis *axis_of(const hairlut_model *model, int lobe, int angle)
 {
     return angle ? &model->lobes[lobe].phi : &model->lobes[lobe].theta;

@@ -3,6 +3,7 @@
 
 import ctypes
 import shutil
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,6 +18,22 @@ UNIFORM, OCTAVES = 0, 1
 DIFFERENCE, SUM = 0, 1
 
 
+class CParameter(ctypes.Structure):
+    _fields_ = [
+        ("size", ctypes.c_size_t),
+        ("name", ctypes.c_char_p),
+        *((name, ctypes.c_float) for name in ("least", "most", "standard")),
+    ]
+
+
+class CNodes(ctypes.Structure):
+    _fields_ = [
+        ("size", ctypes.c_size_t),
+        *((name, ctypes.c_int) for name in ("parameter", "count")),
+        ("values", ctypes.POINTER(ctypes.c_float)),
+    ]
+
+
 class CTable(ctypes.Structure):
     _fields_ = [
         ("size", ctypes.c_size_t),
@@ -25,6 +42,8 @@ class CTable(ctypes.Structure):
         *((name, ctypes.c_float) for name in ("theta_r_min", "theta_r_max", "domain_min", "domain_max")),
         ("warp", ctypes.c_int),
         ("warp_e", ctypes.c_float),
+        ("axis_count", ctypes.c_int),
+        ("axes", ctypes.POINTER(CNodes)),
     ]
 
 
@@ -44,6 +63,8 @@ class CMixture(ctypes.Structure):
         *((name, ctypes.c_int) for name in ("theta_r_count", "offset_count")),
         *((name, ctypes.POINTER(ctypes.c_float)) for name in ("theta_r", "offset", "share", "turn")),
         ("mirrored", ctypes.c_int),
+        ("axis_count", ctypes.c_int),
+        ("axes", ctypes.POINTER(CNodes)),
     ]
 
 
@@ -53,6 +74,8 @@ class CDescription(ctypes.Structure):
         ("lobe_count", ctypes.c_int),
         ("lobes", ctypes.POINTER(CLobe)),
         ("mixture", ctypes.POINTER(CMixture)),
+        ("parameter_count", ctypes.c_int),
+        ("parameters", ctypes.POINTER(CParameter)),
     ]
 
 
@@ -69,8 +92,43 @@ def _floats(array: np.ndarray | None):
 
 
 @dataclass
+class Parameter:
+    """hairlut_parameter, in Python."""
+
+    name: str | None
+    least: float
+    most: float
+    standard: float
+
+    def c(self) -> CParameter:
+        name = None if self.name is None else self.name.encode()
+        return CParameter(ctypes.sizeof(CParameter), name, self.least, self.most, self.standard)
+
+
+@dataclass
+class Nodes:
+    """hairlut_parameter_nodes, in Python."""
+
+    parameter: int
+    values: np.ndarray | None
+    count: int | None = None  # other than that of the values
+
+    def c(self) -> CNodes:
+        """The structure; it borrows the values."""
+        if self.values is not None:
+            self.values = np.ascontiguousarray(self.values, np.float32)
+        count = len(self.values) if self.count is None else self.count
+        return CNodes(ctypes.sizeof(CNodes), self.parameter, count, _floats(self.values))
+
+
+def _array(kind: type[ctypes.Structure], values: Sequence) -> ctypes.Array:
+    return (kind * max(len(values), 1))(*(value.c() for value in values))
+
+
+@dataclass
 class MemoryTable:
-    """hairlut_table, in Python. texels: (height, width, 2), angles and dx/du."""
+    """hairlut_table, in Python. texels: (height, width, 2), angles and dx/du; with axes, (nodes, height,
+    width, 2)."""
 
     texels: np.ndarray | None
     domain: tuple[float, float] = (-HALF_PI, HALF_PI)
@@ -78,6 +136,7 @@ class MemoryTable:
     warp: int = OCTAVES
     warp_e: float = 2.0**-18
     size: tuple[int, int] | None = None  # width, height, other than the shape of the texels
+    axes: Sequence[Nodes] = ()
 
     def c(self) -> CTable:
         """The structure; it borrows the texels."""
@@ -85,10 +144,11 @@ class MemoryTable:
             width, height = self.size
         else:
             self.texels = np.ascontiguousarray(self.texels, np.float32)
-            width, height = self.size or self.texels.shape[1::-1]
+            width, height = self.size or self.texels.shape[-2:-4:-1]
         size = ctypes.sizeof(CTable)
         numbers = *self.theta_r_range, *self.domain, self.warp, self.warp_e
-        return CTable(size, _floats(self.texels), width, height, *numbers)
+        self.kept = _array(CNodes, self.axes)
+        return CTable(size, _floats(self.texels), width, height, *numbers, len(self.axes), self.kept)
 
 
 def knots(width: int, warp: int = OCTAVES, warp_e: float = 2.0**-18) -> np.ndarray:
@@ -167,7 +227,8 @@ class Lobe:
 
 @dataclass
 class Mixture:
-    """hairlut_mixture_desc, in Python. share, turn: (lobes, theta_r, offset)."""
+    """hairlut_mixture_desc, in Python. share, turn: (lobes, theta_r, offset); with axes, (lobes, nodes,
+    theta_r, offset)."""
 
     theta_r: np.ndarray | None = None
     offset: np.ndarray | None = None
@@ -175,6 +236,7 @@ class Mixture:
     turn: np.ndarray | None = None
     mirrored: int = 0
     counts: tuple[int, int] | None = None  # other than the lengths of the nodes
+    axes: Sequence[Nodes] = ()
 
     def c(self) -> CMixture:
         """The structure; it borrows the arrays."""
@@ -184,19 +246,26 @@ class Mixture:
                 setattr(self, name, np.ascontiguousarray(getattr(self, name), np.float32))
         lengths = [1 if nodes is None else len(nodes) for nodes in (self.theta_r, self.offset)]
         arrays = [_floats(getattr(self, name)) for name in names]
-        return CMixture(ctypes.sizeof(CMixture), *(self.counts or lengths), *arrays, self.mirrored)
+        self.kept = _array(CNodes, self.axes)
+        counts = self.counts or lengths
+        return CMixture(ctypes.sizeof(CMixture), *counts, *arrays, self.mirrored, len(self.axes), self.kept)
 
 
 class Description:
     """A hairlut_model_desc and what it points to. Lobes that name one table share its descriptor."""
 
-    def __init__(self, lobes: list[Lobe], mixture: Mixture | None = None) -> None:
+    def __init__(
+        self, lobes: list[Lobe], mixture: Mixture | None = None, parameters: Sequence[Parameter] = ()
+    ) -> None:
         tables = {id(t): t for lobe in lobes for t in (lobe.theta, lobe.phi) if t is not None}
         self.tables = {key: t.c() for key, t in tables.items()}
         self.lobes = (CLobe * max(len(lobes), 1))(*(self._lobe(lobe) for lobe in lobes))
         self.mixture = mixture and mixture.c()
         points = ctypes.pointer(self.mixture) if mixture else None
-        self.c = CDescription(ctypes.sizeof(CDescription), len(lobes), self.lobes, points)
+        self.parameters = _array(CParameter, parameters)
+        self.c = CDescription(
+            ctypes.sizeof(CDescription), len(lobes), self.lobes, points, len(parameters), self.parameters
+        )
         self.borrowed = lobes, mixture
 
     def _lobe(self, lobe: Lobe) -> CLobe:

@@ -316,7 +316,7 @@ SIZES = {
 @pytest.mark.parametrize("which", SIZES)
 def test_descriptors_of_another_size_are_refused(which):
     part, name = SIZES[which]
-    for by, expected in ((8, VERSION), (-8, ARGUMENT)):
+    for by, expected in ((8, VERSION), (-4, ARGUMENT)):
         result, message = refused(two_lobes(), mixture(), lambda d, by=by: grow(part(d), by))
         assert result == expected
         assert f"size of a {name} is" in message

@@ -18,13 +18,13 @@ const hairlut_model *create(int table_count, const float *const *texels, const i
     hairlut_lobe_desc descs[HAIRLUT_MAX_LOBES];
     for (int k = 0; k < table_count; ++k, sizes += 3, numbers += 5)
         tables[k] = (hairlut_table){
-            sizeof *tables,         texels[k], sizes[0], sizes[1], numbers[0], numbers[1], numbers[2], numbers[3],
-            (hairlut_warp)sizes[2], numbers[4]};
+            sizeof *tables,         texels[k],  sizes[0], sizes[1], numbers[0], numbers[1], numbers[2], numbers[3],
+            (hairlut_warp)sizes[2], numbers[4], 0,        NULL};
     for (int k = 0; k < lobe_count; ++k, lobes += 3)
         descs[k] = (hairlut_lobe_desc){sizeof *descs, names[k], &tables[lobes[0]], lobes[1] < 0 ? NULL : &tables[lobes[1]],
                                        (hairlut_azimuth)lobes[2]};
-    const hairlut_mixture_desc mixture = {sizeof mixture, grid[0], grid[1], theta_r, offset, share, turn, grid[2]};
-    const hairlut_model_desc desc = {sizeof desc, lobe_count, descs, &mixture};
+    const hairlut_mixture_desc mixture = {sizeof mixture, grid[0], grid[1], theta_r, offset, share, turn, grid[2], 0, NULL};
+    const hairlut_model_desc desc = {sizeof desc, lobe_count, descs, &mixture, 0, NULL};
     hairlut_model *model = NULL;
     return hairlut_model_create(&desc, NULL, &model, message) == HAIRLUT_OK ? model : NULL;
 }

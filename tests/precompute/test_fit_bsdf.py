@@ -4,11 +4,13 @@
 import json
 import warnings
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 import pytest
 
 from hairlut import cli, exr
+from hairlut.fit import effort as efforts
 from hairlut.fit import hair, promise, refine
 
 EXAMPLE = "precompute/examples/chiang2016.py"
@@ -97,6 +99,40 @@ def test_a_near_field_hair_keeps_its_promise_between_nodes(tmp_path, capsys):
     assert "warning" not in err
 
 
+def test_a_slow_function_is_fitted_within_its_budget(tmp_path, capsys):
+    """At full effort its values alone take most of a minute."""
+    slow = "import time\n" + NEAR.replace(
+        "    return", "    time.sleep(2e-6 * np.size(narrow + broad))\n    return"
+    )
+    start = perf_counter()
+    model, told, _ = run(fitted(tmp_path, slow), tmp_path / "out", capsys, "--budget", "6")
+    assert perf_counter() - start < 1.5 * 6 + 6
+    assert told["relative_variance"] < 0.05
+    assert quadrature(model, function(fitted(tmp_path, NEAR)), 0.111, 0.3)[0] < 0.05
+
+
+def test_a_fit_without_enough_time_says_what_limits_it(tmp_path, capsys):
+    path = fitted(tmp_path, NEAR.replace("8.0", "2000.0"))
+    assert cli.main(["fit", str(path), "--out", str(tmp_path / "out"), "--budget", "0.1"]) == cli.OK
+    assert "stops short of the tolerance 0.01, for want of time (--budget); what limits it: " in (
+        capsys.readouterr().out
+    )
+    assert exr.read_model(tmp_path / "out" / "hair").errors["mixture"]["relative_variance"] > 0.02
+
+
+def test_the_less_time_the_coarser_the_first_cells():
+    given = hair.of_density(lambda theta_r, theta_i, phi, offset: 1.1 + np.cos(phi + 2 * offset), True)
+    paces = [efforts.Pace(10.0**-k, 1e-9) for k in (9, 7, 6, 5, 4)]
+    chosen = [efforts.affordable(given, pace, 256, 60.0) for pace in paces]
+    assert chosen[0] == efforts.EFFORTS[0]
+    assert chosen[-1] == efforts.EFFORTS[-1]
+    assert [efforts.EFFORTS.index(one) for one in chosen] == sorted(
+        efforts.EFFORTS.index(one) for one in chosen
+    )
+    for pace, one in zip(paces[:-1], chosen, strict=False):
+        assert efforts.seconds(given, pace, one, 256) < 30 or one == efforts.EFFORTS[-1]
+
+
 def test_losses_are_measured_between_all_offsets(monkeypatch):
     """Lobes of a like shape that cross do so between two offsets, and V is large there alone."""
     seen = []
@@ -108,7 +144,9 @@ def test_losses_are_measured_between_all_offsets(monkeypatch):
     monkeypatch.setattr(promise, "losses", losses)
     given = hair.of_density(lambda theta_r, theta_i, phi, offset: 1.1 + np.cos(phi + 2 * offset), True)
     for count in (4, 11, 41):
-        refine._losses(given, None, refine.Axes(37, count, 32, 8), np.random.default_rng(0))
+        refine._losses(
+            given, None, refine.Axes(37, count, 32, 8), efforts.EFFORTS[0], np.random.default_rng(0)
+        )
         angle = given.angles(count)
         assert np.unique(seen[-1]) == pytest.approx(np.sin((angle[1:] + angle[:-1]) / 2))
 

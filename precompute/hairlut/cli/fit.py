@@ -86,8 +86,8 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         "--budget",
         type=float,
         metavar="SECONDS",
-        help=f"time after which the best fit so far is taken (default: {DEFAULT_BUDGET:g}, for a hair with "
-        f"parameters {DEFAULT_BUDGET_OF_PARAMETERS:g})",
+        help="time that a fit may take, about: fewer cells where it is short (default: "
+        f"{DEFAULT_BUDGET:g}, for a hair with parameters {DEFAULT_BUDGET_OF_PARAMETERS:g})",
     )
     parser.add_argument("--json", action="store_true", help="print the result as JSON, and nothing else")
     parser.add_argument(

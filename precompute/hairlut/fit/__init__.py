@@ -3,8 +3,8 @@
 
 bsdf runs a user's function, read takes grids and draws from files, and hair, grid and draws make densities
 or cells of them. factor, highlights, turning and lobesfit find lobes, smooth and tables bake them, promise
-measures the textures, and refine does all that again with finer cells until it is good enough. summary,
-warnings and plot report.
+measures the textures, and refine does all that again with finer cells until it is good enough. effort chooses
+how coarse it starts within a budget of time. summary, warnings and plot report.
 
 A hair with named parameters is a box of hairs. shapes finds its lobes at one corner, by the updates of tied,
 and follows them through the box; dependence says which of them a parameter changes. nodeshapes, nodetables and

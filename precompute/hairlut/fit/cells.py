@@ -21,10 +21,11 @@ unit."""
 
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # two points a cell and axis, of equal weight
 FINE = 1000  # points along theta_i, and
-AROUND = 96  # around the fibre, by which the cells of theta_i are chosen
+AROUND = 96  # around the fibre, at most, by which the cells of theta_i are chosen
 MIXED = 0.2  # part of the cells that is even
 STEEPNESS = 1 / 3  # cells are as dense as this power of the light: it follows a lobe into its tails
 HARMONICS = 2048  # points around the fibre by which the number of the azimuth's cells is chosen
+PLACES = 33, 9  # of theta_i, even and near the mirror direction, for that
 CUTOFF = 2e-3  # harmonics weaker than this part of the mean are not resolved
 MIN_PHI, MAX_PHI = 48, 384
 CHUNK = 2_000_000  # values at once
@@ -68,16 +69,17 @@ def _of_row(density: Density, theta_r: float, offset: Array, edges: Array, count
     return np.concatenate(parts)
 
 
-def theta_edges(density: Density, theta_r: Array, offset: Array, count: int) -> Array:
-    """(J, count+1) edges of cells of theta_i that resolve the light of each theta_r at some offsets."""
+def theta_edges(density: Density, theta_r: Array, offset: Array, count: int, around: int = AROUND) -> Array:
+    """(J, count+1) edges of cells of theta_i that resolve the light of each theta_r at some offsets and
+    `around` azimuths."""
     fine = (np.arange(FINE) + 0.5) * (np.pi / FINE) - HALF_PI
-    phi = np.arange(AROUND) * (TWO_PI / AROUND)
+    phi = np.arange(around) * (TWO_PI / around)
     between = np.linspace(-HALF_PI, HALF_PI, FINE + 1)
     edges = []
     for at in theta_r:
         wanted = np.zeros(FINE)
         for h in offset:
-            values = np.broadcast_to(density(at, fine[:, None], phi, h), (FINE, AROUND))
+            values = np.broadcast_to(density(at, fine[:, None], phi, h), (FINE, around))
             for profile in (values.max(axis=1), values.mean(axis=1)):
                 wanted += profile / max(profile.sum(), 1e-300)
         wanted **= STEEPNESS
@@ -87,13 +89,20 @@ def theta_edges(density: Density, theta_r: Array, offset: Array, count: int) -> 
     return np.array(edges)
 
 
+def phi_values(theta_r: Array, offset: Array) -> int:
+    """How many values phi_count evaluates."""
+    return len(theta_r) * len(offset) * sum(PLACES) * HARMONICS
+
+
 def phi_count(density: Density, theta_r: Array, offset: Array) -> int:
     """As many cells of the azimuth as resolve the light's harmonics."""
     phi = np.arange(HARMONICS) * (TWO_PI / HARMONICS)
-    theta_i = np.linspace(-1, 1, 33) * (HALF_PI - 0.01)
+    theta_i = np.linspace(-1, 1, PLACES[0]) * (HALF_PI - 0.01)
     highest = 1
     for at in theta_r:
-        near = np.clip(np.append(theta_i, -at + np.linspace(-0.1, 0.1, 9)), -HALF_PI + 1e-3, HALF_PI - 1e-3)
+        near = np.clip(
+            np.append(theta_i, -at + np.linspace(-0.1, 0.1, PLACES[1])), -HALF_PI + 1e-3, HALF_PI - 1e-3
+        )
         for h in offset:
             values = np.broadcast_to(density(at, near[:, None], phi, h), (near.size, HARMONICS))
             strength = abs(np.fft.rfft(values.sum(axis=0)))

@@ -19,7 +19,7 @@ from .turning import TWO_PI
 LEAST = 1e-12  # of the largest value: what a logarithm takes a zero for
 BEND = 0.5  # how far, in the logarithm, a cubic may leave the two points that it lies between
 NARROW = np.radians(0.5)  # range around a grid's only theta_r
-ROWS = 36  # intervals of theta_r, at least
+ROWS = 12  # intervals of theta_r, at least
 
 
 def of_grid(grid: Grid, per_steradian: bool) -> Hair:
@@ -59,10 +59,13 @@ class _Surface:
             and given[2].ndim == 1
         ):
             return self._at(float(given[0]), given[1].ravel(), given[2], given[3])
-        flat = [x.ravel() for x in np.broadcast_arrays(*given)]
-        points = zip(*flat, strict=True)
-        values = [self._at(t, np.array([i]), np.array([p]), np.array(h)).item() for t, i, p, h in points]
-        return np.reshape(values, np.broadcast_shapes(*(x.shape for x in given)))
+        theta_r, theta_i, phi, offset = (x.ravel() for x in np.broadcast_arrays(*given))
+        places, which = np.unique([theta_r, theta_i, phi], axis=1, return_inverse=True)
+        values = np.empty(theta_r.size)
+        for k, (t, i, p) in enumerate(places.T):  # each with all of its offsets at once
+            at = np.flatnonzero(which.ravel() == k)
+            values[at] = self._at(t, np.array([i]), np.array([p]), offset[at, None, None]).ravel()
+        return values.reshape(np.broadcast_shapes(*(x.shape for x in given)))
 
     def _at(self, theta_r: float, theta_i: Array, phi: Array, offset: Array) -> Array:
         """(..., n, m) at theta_i (n,), phi (m,) and the grid's offsets nearest to offset (..., 1, 1)."""

@@ -22,7 +22,9 @@ PLACES = 512
 @dataclass(frozen=True)
 class Hair:
     """density: the light per rad^2 in (theta_i, phi), f cos(theta_i)^2. offsets: whether it depends on where
-    the fibre is hit; mirrored: whether at -offset the azimuth is mirrored. theta_r: range of it, rad."""
+    the fibre is hit; mirrored: whether at -offset the azimuth is mirrored. theta_r: range of it, rad.
+    intervals: what the number of theta_r's intervals is a multiple of. nodes: the only angles asin(offset)
+    that are known."""
 
     density: Density
     offsets: bool
@@ -44,6 +46,18 @@ class Hair:
     def rows(self, count: int) -> Array:
         """(count,) even theta_r."""
         return np.linspace(*self.theta_r, count)
+
+    def row_count(self, intervals: float) -> int:
+        """Of at least so many intervals, which tables can share out."""
+        return self.intervals * int(np.ceil(intervals / self.intervals - 1e-9)) + 1
+
+    def offset_count(self, count: int) -> int:
+        """Of nodes with so many from 0 to 1."""
+        if self.nodes is not None:
+            return len(self.nodes)
+        if not self.offsets:
+            return 1
+        return count if self.mirrored else 2 * count - 1
 
 
 def of_density(density: Density, offsets: bool) -> Hair:

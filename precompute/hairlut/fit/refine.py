@@ -20,29 +20,32 @@ from ..lobes import Array
 from ..mixture import Mixture, wrap
 from ..model import BakedLobe, BakedModel
 from . import cells, promise, smooth, tables
+from . import effort as efforts
 from .cells import Cells
+from .effort import Effort
 from .factor import variance
 from .hair import Hair
 from .lobesfit import Row, first_row, next_row, one_more, same_shapes
 from .turning import TWO_PI
 
 MAX_LOBES = 8
+USUAL_LOBES = 3  # reflected, transmitted, and reflected inside: so many are tried however late it is
 GAIN = 0.001
 """Lobes are worth their memory if they lower V by this much, and"""
 PART = 0.2
 """by this part of the least V of all numbers of lobes."""
 HEAVIEST = 10.0  # a weight that is a firefly
 FITTED_OFFSETS = 13  # offsets by which shapes are fitted; shares and turns are at all
-START = {"theta_r": 37, "offset": 11, "theta_i": 32}
 LIMITS = {"theta_r": 145, "offset": 65, "theta_i": 128, "phi": 512}
 FARTHEST = 0.5  # rad by which a turn is expected to go on from row to row
 TABLE_PART = 0.15  # of the tolerance that each table may lose
 SHARE_OF_AXIS = 0.2  # of the tolerance above which an axis is refined
 WEIGHT_PARTS = 5.0  # what a weight that is too large counts, or a viewer whose V is
 LARGEST_STEP = 2.0
-VIEWERS, OFFSETS = 24, 8
-REPEATS = 4
-ROWS, GAPS = 9, 5  # of theta_r and, for each, of the offset, on and between which losses are distinguished
+ROWS, GAPS = (
+    3 / 8,
+    5,
+)  # of the viewers and, for each, of the offset, on and between which losses are told apart
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,8 @@ class Fitted:
     """A baked model; reach: V that so many lobes have on the cells they were fitted to, the mean over
     theta_r and the worst; loss: V and largest weight by where they were measured ("nodes", "theta_r",
     "offset": between those); promised: losses at random viewers, in `repeats` independent groups of as
-    many."""
+    many; untried_lobes: whether more lobes were not tried, and out_of_time, whether they or finer cells were
+    not, for want of time."""
 
     model: BakedModel
     axes: Axes
@@ -69,6 +73,8 @@ class Fitted:
     loss: dict[str, tuple[float, float]]
     promised: promise.Losses
     repeats: int = 1
+    untried_lobes: bool = False
+    out_of_time: bool = False
 
 
 Report = Callable[[str, float], None]
@@ -78,26 +84,46 @@ def fit(hair: Hair, name: str, tolerance: float, lobes: int | None, budget: floa
     """The model of a hair. lobes: how many, or None to choose; budget: seconds that it may take, about."""
     start = perf_counter()
     random = np.random.default_rng(0)
-    axes = _first_axes(hair)
-    count = lobes or _lobes(hair, axes, report)
-    turning = hair.offsets and _turns(hair, axes, count)
     best: Fitted | None = None
+
+    def left() -> float:
+        return budget - (perf_counter() - start)
 
     def so_far(stage: str, share: float) -> None:
         reached = f"V {best.promised.variance.mean():.4f} so far, " if best else ""
         report(f"{reached}{stage}", share)
 
+    axes, effort = _first(hair, budget)
+    count, untried = (
+        (lobes, False) if lobes else _lobes(hair, axes, effort, report, lambda: left() < budget / 2)
+    )
+    turning = hair.offsets and _turns(hair, axes, effort, count)
     while True:
         began = perf_counter()
-        found = _fit_once(hair, name, axes, count, turning, tolerance, random, so_far)
-        if best is None or _score(found, tolerance) < _score(best, tolerance):
-            best = found
+        found = _fit_once(hair, name, axes, effort, count, turning, tolerance, random, so_far)
         seconds = perf_counter() - began
+        better = best is None or _score(found, tolerance) < _score(best, tolerance)
+        if not limits(found, tolerance):
+            found = _measured(found, hair, effort, random, so_far)
+        best = found if better else best
         finer = _finer(found, hair, tolerance)
         growth = np.prod([getattr(finer, axis) / getattr(axes, axis) for axis in LIMITS])
-        if finer == axes or perf_counter() - start + growth * seconds > budget:
-            return _measured(best, hair, random, report)
+        if finer == axes or growth * seconds > left():
+            best = replace(best, untried_lobes=untried, out_of_time=untried or finer != axes)
+            return best if best.repeats > 1 else _measured(best, hair, effort, random, so_far)
         axes = finer
+
+
+def _first(hair: Hair, budget: float) -> tuple[Axes, Effort]:
+    """The axes that a fit starts from, and what it may look at."""
+    pace = efforts.pace(hair)
+    theta_r, offset = hair.rows(9)[[1, 4, 7]], np.sin(hair.angles(5))[:4]
+    if pace.value * cells.phi_values(theta_r, offset) > budget / 10:
+        theta_r, offset = theta_r[1:2], offset[:1]
+    phi = cells.phi_count(hair.density, theta_r, offset)
+    effort = efforts.affordable(hair, pace, phi, budget)
+    rows, offsets = hair.row_count(effort.intervals), hair.offset_count(effort.offset)
+    return Axes(rows, offsets, effort.theta_i, efforts.phi_cells(effort, phi)), effort
 
 
 def limits(found: Fitted, tolerance: float) -> list[str]:
@@ -106,23 +132,27 @@ def limits(found: Fitted, tolerance: float) -> list[str]:
     means = [viewers.mean(), *(variance for variance, _ in found.loss.values())]
     weights = [found.promised.weight.max(), *(weight for _, weight in found.loss.values())]
     near = max(means) <= found.reach + tolerance and viewers.max() <= found.worst_reach + 2 * tolerance
+    lobes = ["lobes"] if found.untried_lobes else []
     if near and max(weights) <= HEAVIEST:
-        return []
-    return list(_standing_out(found, tolerance)) or ["lobes"]
+        return lobes
+    return [*_standing_out(found, tolerance), *lobes] or ["lobes"]
 
 
-def _measured(found: Fitted, hair: Hair, random: np.random.Generator, report: Report) -> Fitted:
+def _measured(
+    found: Fitted, hair: Hair, effort: Effort, random: np.random.Generator, report: Report
+) -> Fitted:
     """The fit with its promise measured again, at more places."""
     groups = []
-    for k in range(REPEATS):
-        report("measuring", k / REPEATS)
-        theta_r, offset = _random_places(hair, random)
-        groups.append(promise.losses(found.model, hair.density, theta_r, offset, 2 * found.axes.phi, random))
+    for k in range(effort.repeats):
+        report("measuring", k / effort.repeats)
+        theta_r, offset = _random_places(hair, effort, random)
+        around = effort.around * found.axes.phi
+        groups.append(promise.losses(found.model, hair.density, theta_r, offset, around, random))
     parts = (
         np.concatenate([getattr(group, name) for group in groups])
         for name in ("theta_r", "offset", "variance", "weight", "light")
     )
-    return replace(found, promised=promise.Losses(*parts), repeats=REPEATS)
+    return replace(found, promised=promise.Losses(*parts), repeats=effort.repeats)
 
 
 def _score(found: Fitted, tolerance: float) -> float:
@@ -132,19 +162,13 @@ def _score(found: Fitted, tolerance: float) -> float:
     )
 
 
-def _first_axes(hair: Hair) -> Axes:
-    theta_r, offset = hair.rows(9)[[1, 4, 7]], np.sin(hair.angles(5))[:4]
-    offsets = START["offset"] * (1 if hair.mirrored else 2) - (not hair.mirrored) if hair.offsets else 1
-    if hair.nodes is not None:
-        offsets = len(hair.nodes)
-    rows = hair.intervals * -(-(START["theta_r"] - 1) // hair.intervals) + 1
-    return Axes(rows, offsets, START["theta_i"], cells.phi_count(hair.density, theta_r, offset))
-
-
-def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
-    """How many lobes gain, on three viewers: more are tried until two of them gain nothing."""
+def _lobes(
+    hair: Hair, axes: Axes, effort: Effort, report: Report, late: Callable[[], bool]
+) -> tuple[int, bool]:
+    """How many lobes gain, on three viewers, and whether it was late before two more of them gained
+    nothing."""
     theta_r = hair.rows(13)[[2, 6, 9]]
-    data = _cells(hair, theta_r, hair.angles(axes.offset), axes)
+    data = _cells(hair, theta_r, hair.angles(axes.offset), axes, effort)
     angle = hair.angles(axes.offset)
     reached: list[float] = []
     rows: list[Row | None] = [None] * len(data.mass)
@@ -154,7 +178,9 @@ def _lobes(hair: Hair, axes: Axes, report: Report) -> int:
         reached.append(np.mean([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)]))
         if reached[-1] < GAIN or _enough(reached) < count - 1:
             break
-    return _enough(reached)
+        if count >= USUAL_LOBES and late():
+            return _enough(reached), True
+    return _enough(reached), False
 
 
 def _enough(reached: list[float]) -> int:
@@ -163,18 +189,18 @@ def _enough(reached: list[float]) -> int:
     return next(k + 1 for k, v in enumerate(reached) if v <= least + max(GAIN, PART * least))
 
 
-def _turns(hair: Hair, axes: Axes, count: int) -> bool:
+def _turns(hair: Hair, axes: Axes, effort: Effort, count: int) -> bool:
     """Whether so many lobes lose more where they may not turn."""
     angle = hair.angles(axes.offset)
-    mass = _cells(hair, hair.rows(3)[1:2], angle, axes).mass[0]
+    mass = _cells(hair, hair.rows(3)[1:2], angle, axes, effort).mass[0]
     free, fixed = (first_row(mass, angle, count, turning).variance(mass) for turning in (True, False))
     return fixed > free + GAIN
 
 
-def _cells(hair: Hair, theta_r: Array, angle: Array, axes: Axes) -> Cells:
+def _cells(hair: Hair, theta_r: Array, angle: Array, axes: Axes, effort: Effort) -> Cells:
     offset = np.sin(angle)
-    some = offset[np.unique([0, len(offset) // 2, max(len(offset) - 2, 0)])]
-    edges = cells.theta_edges(hair.density, theta_r, some, axes.theta_i)
+    some = offset[np.unique([len(offset) // 2, 0, max(len(offset) - 2, 0)][: effort.edge_offsets])]
+    edges = cells.theta_edges(hair.density, theta_r, some, axes.theta_i, effort.edge_azimuths)
     data = cells.of_density(hair.density, theta_r, offset, edges, axes.phi)
     if not data.light.any():
         raise HairlutError("f is 0 wherever it was evaluated: no light, or only between the directions tried")
@@ -185,6 +211,7 @@ def _fit_once(
     hair: Hair,
     name: str,
     axes: Axes,
+    effort: Effort,
     count: int,
     turning: bool,
     tolerance: float,
@@ -193,14 +220,14 @@ def _fit_once(
 ) -> Fitted:
     report("evaluating", 0.0)
     angle = hair.angles(axes.offset)
-    data = _cells(hair, hair.rows(axes.theta_r), angle, axes)
+    data = _cells(hair, hair.rows(axes.theta_r), angle, axes, effort)
     rows = fit_rows(data, angle, count, turning, lambda share: report("fitting lobes", share))
     reach = np.array([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)])
     model = bake(data, rows, name, hair.mirrored, TABLE_PART * tolerance)
     report("measuring", 0.0)
-    loss = _losses(hair, model, axes, random)
-    theta_r, offset = _random_places(hair, random)
-    promised = promise.losses(model, hair.density, theta_r, offset, 2 * axes.phi, random)
+    loss = _losses(hair, model, axes, effort, random)
+    theta_r, offset = _random_places(hair, effort, random)
+    promised = promise.losses(model, hair.density, theta_r, offset, effort.around * axes.phi, random)
     if not np.isfinite(promised.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
     return Fitted(model, axes, float(reach.mean()), float(reach.max()), loss, promised)
@@ -290,14 +317,15 @@ def _uniform(azimuths: Array, need: tables.Need) -> bool:
 
 
 def _losses(
-    hair: Hair, model: BakedModel, axes: Axes, random: np.random.Generator
+    hair: Hair, model: BakedModel, axes: Axes, effort: Effort, random: np.random.Generator
 ) -> dict[str, tuple[float, float]]:
     """V and the largest weight on nodes, between rows, and between offsets."""
     theta_r, angle = hair.rows(axes.theta_r), hair.angles(axes.offset)
-    rows = ((np.arange(ROWS) + 0.5) * ((axes.theta_r - 1) / ROWS) - 0.5).round().astype(int)
+    count = round(ROWS * effort.viewers)
+    rows = ((np.arange(count) + 0.5) * ((axes.theta_r - 1) / count) - 0.5).round().astype(int)
     gaps = max(axes.offset - 1, 1)
     each = min(GAPS, gaps)  # of a row; together the rows see all, since lobes that cross do so in one
-    gap = np.arange(ROWS * each).reshape(ROWS, each) % gaps
+    gap = np.arange(count * each).reshape(count, each) % gaps
     at = {
         "nodes": (theta_r[rows + 1], angle[gap]),
         "theta_r": ((theta_r[rows] + theta_r[rows + 1]) / 2, angle[gap]),
@@ -306,12 +334,13 @@ def _losses(
     if hair.offsets and hair.nodes is None:
         at["offset"] = theta_r[rows + 1], (angle[gap] + angle[gap + 1]) / 2
     elif axes.offset >= 5:
-        at["offset"] = theta_r[rows + 1], np.tile(angle[1:-1:2], (ROWS, 1))
+        at["offset"] = theta_r[rows + 1], np.tile(angle[1:-1:2], (count, 1))
         models["offset"] = _without(model, np.arange(1, axes.offset - 1, 2))
     found = {}
     for where, (viewers, angles) in at.items():
         model_there = models.get(where, model)
-        loss = promise.losses(model_there, hair.density, viewers, np.sin(angles), 2 * axes.phi, random)
+        around = effort.around * axes.phi
+        loss = promise.losses(model_there, hair.density, viewers, np.sin(angles), around, random)
         found[where] = float(loss.variance.mean()), float(loss.weight.max())
     return found
 
@@ -323,15 +352,16 @@ def _without(model: BakedModel, offsets: Array) -> BakedModel:
     return replace(model, mixture=replace(mixture, **axis))
 
 
-def _random_places(hair: Hair, random: np.random.Generator) -> tuple[Array, Array]:
+def _random_places(hair: Hair, effort: Effort, random: np.random.Generator) -> tuple[Array, Array]:
     """Viewers (R,) and offsets (R, N), random in even strata."""
     low, high = hair.theta_r
-    theta_r = low + (high - low) * (np.arange(VIEWERS) + random.random(VIEWERS)) / VIEWERS
+    viewers, offsets = effort.viewers, effort.measured_offsets
+    theta_r = low + (high - low) * (np.arange(viewers) + random.random(viewers)) / viewers
     if hair.nodes is not None:
-        return theta_r, np.tile(np.sin(hair.nodes), (VIEWERS, 1))
+        return theta_r, np.tile(np.sin(hair.nodes), (viewers, 1))
     if not hair.offsets:
-        return theta_r, np.zeros((VIEWERS, 1))
-    offset = (np.arange(OFFSETS) + random.random((VIEWERS, OFFSETS))) / OFFSETS
+        return theta_r, np.zeros((viewers, 1))
+    offset = (np.arange(offsets) + random.random((viewers, offsets))) / offsets
     return theta_r, offset if hair.mirrored else 2 * offset - 1
 
 
@@ -369,7 +399,7 @@ def _finer(found: Fitted, hair: Hair, tolerance: float) -> Axes:
 def _count(axis: str, now: int, step: float, hair: Hair) -> int:
     """A count about step times as large: with rows that tables can share out, and cells in eights."""
     if axis == "theta_r":
-        count = hair.intervals * int(np.ceil((now - 1) * step / hair.intervals - 1e-9)) + 1
+        count = hair.row_count((now - 1) * step)
     elif axis == "offset":
         count = 2 * int(np.ceil((now - 1) * step / 2 - 1e-9)) + 1
     else:

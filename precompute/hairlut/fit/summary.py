@@ -67,6 +67,7 @@ def data(found: Fitted, tolerance: float) -> dict:
         "reach": found.reach,
         "tolerance": tolerance,
         "limits": limits(found, tolerance),
+        "out_of_time": found.out_of_time,
         "lobes": len(found.model.lobes),
         "cells": asdict(found.axes),
         "tables": {table.name: [table.width, table.height] for table in found.model.tables},
@@ -112,7 +113,8 @@ def _verdict(found: Fitted, tolerance: float) -> str:
     if not what:
         best = lobes_text(len(found.model.lobes))
         return f"meets the tolerance: within {tolerance:g} of what {best} can reach"
-    return f"stops short of the tolerance {tolerance:g}; what limits it: {', '.join(what)}"
+    why = ", for want of time (--budget)" if found.out_of_time else ""
+    return f"stops short of the tolerance {tolerance:g}{why}; what limits it: {', '.join(what)}"
 
 
 def with_errors(found: Fitted) -> BakedModel:

@@ -18,7 +18,7 @@ from .turning import TWO_PI
 
 MOST_ENERGY = 1.5  # of the light received; numerical models of hair exceed 1 by a few percent
 STEEP = np.radians(75.0)  # larger theta_r are not judged: many models gain energy there
-PAIRS, OFFSETS = 400, 32
+PAIRS, OFFSETS = 200, 32
 UNLIKE, ALIKE = 0.05, 0.005  # median difference of logarithms
 MEANING = {
     1: "it seems to have the cosine already: leave cos(theta_i) out",

@@ -38,7 +38,11 @@ class Parameter:
     def __post_init__(self) -> None:
         check_name(self.name)
         given = np.array([self.least, self.standard, self.most], float)
-        if not (abs(given) <= LARGEST).all() or not _rising(given[[0, 2]]) or (np.diff(given) < 0).any():
+        if (
+            not (abs(given) <= LARGEST).all()
+            or not _rising(given[[0, 2]])
+            or (np.diff(np.float32(given)) < 0).any()
+        ):
             raise HairlutError(
                 f"parameter {self.name}: is {numbers_of(given[[0, 2, 1]])}, expected least, most and "
                 f"standard: an increasing range, and a number in it, of at most {LARGEST:g} in size"

@@ -12,6 +12,7 @@ from .errors import HairlutError
 from .exrfile import PREFIX, REBAKE, Attributes, Header, numbers_text
 
 ROWS = "theta_r"  # the axis of a table's rows of one node
+LAST = "theta_r", "offset"  # the axes of a mixture's rows and columns of one node
 
 
 def of_table(axes: Sequence[Axis]) -> Attributes:
@@ -53,11 +54,15 @@ def read_names(header: Header, last: str, most: int, default: str | None = None)
 
 def read_table_axes(header: Header) -> tuple[Axis, ...]:
     """The axes of a table."""
-    return tuple(_read_axis(header, name) for name in read_names(header, ROWS, MAX_AXES, ROWS))
+    names = read_names(header, ROWS, MAX_AXES, ROWS)
+    _refuse_others(header, "axis", names)
+    return tuple(_read_axis(header, name) for name in names)
 
 
 def read_parameters(header: Header, names: Sequence[str]) -> tuple[tuple[Parameter, ...], tuple[Axis, ...]]:
     """(a mixture's parameters, the axes of those on which it depends)"""
+    _refuse_others(header, "axis", names)
+    _refuse_others(header, "parameter", names)
     parameters = tuple(_read_parameter(header, name) for name in names)
     axes = tuple(_read_axis(header, p.name) for p in parameters if not _is_fixed(header, p))
     try:
@@ -70,6 +75,15 @@ def read_parameters(header: Header, names: Sequence[str]) -> tuple[tuple[Paramet
         except HairlutError as error:
             raise header.failure(f"axis.{axis.name}", f"does not fit ({error})") from error
     return parameters, axes
+
+
+def _refuse_others(header: Header, kind: str, names: Sequence[str]) -> None:
+    """HairlutError if the header says something of a parameter that hairlut.axes lacks."""
+    prefix = f"{PREFIX}{kind}."
+    for attribute in header.attributes:
+        name = attribute.removeprefix(prefix)
+        if attribute.startswith(prefix) and name not in (*names, *LAST):
+            raise header.failure("axes", f"does not name {name[:60]!r}, of which there is a {prefix}<name>")
 
 
 def _is_fixed(header: Header, parameter: Parameter) -> bool:

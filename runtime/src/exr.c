@@ -58,7 +58,8 @@ static hairlut_result check_member(model_files *files, int k)
 static hairlut_result read_table(model_files *files, const hairlut_exr_reference *reference, int is_azimuth)
 {
     static const char *const why[] = {"as there is no mixture.exr beside it", "as in mixture.exr beside it"};
-    const hairlut_exr_kind kind = {reference->table, is_azimuth, files->format, why[files->format - 1]};
+    const hairlut_exr_kind kind = {reference->table, is_azimuth, files->format, why[files->format - 1],
+                                   &files->mixture.parameters};
     for (int k = 0; k < files->count; ++k)
         if (strcmp(files->references[k]->table, reference->table) == 0)
             return HAIRLUT_OK;
@@ -116,8 +117,12 @@ static hairlut_result create(model_files *files, hairlut_model **out)
                                         phi ? phi->azimuth : HAIRLUT_AZIMUTH_DIFFERENCE};
         lobes[k] = desc;
     }
-    const hairlut_model_desc desc = {
-        sizeof desc, files->mixture.lobe_count, lobes, files->format == 1 ? NULL : &files->mixture.desc, 0, NULL};
+    const hairlut_model_desc desc = {sizeof desc,
+                                     files->mixture.lobe_count,
+                                     lobes,
+                                     files->format == 1 ? NULL : &files->mixture.desc,
+                                     files->mixture.parameters.count,
+                                     files->mixture.parameters.list};
     char detail[HAIRLUT_MESSAGE_SIZE];
     const hairlut_result result = hairlut_model_create(&desc, files->allocator, out, detail);
     if (result == HAIRLUT_OK)

@@ -115,7 +115,7 @@ static hairlut_result check_windows(hairlut_exr_file *file)
             "displayWindow is (%d, %d) to (%d, %d): expected the dataWindow, (0, 0) to (%d, %d); do not crop the file",
             display.min.x, display.min.y, display.max.x, display.max.y, data.max.x, data.max.y);
     file->width = data.max.x < HAIRLUT_EXR_LARGEST_SIDE ? data.max.x + 1 : HAIRLUT_EXR_LARGEST_SIDE + 1;
-    file->height = data.max.y < HAIRLUT_EXR_LARGEST_SIDE ? data.max.y + 1 : HAIRLUT_EXR_LARGEST_SIDE + 1;
+    file->height = data.max.y < HAIRLUT_EXR_MOST_ROWS ? data.max.y + 1 : HAIRLUT_EXR_MOST_ROWS + 1;
     return HAIRLUT_OK;
 }
 
@@ -150,14 +150,16 @@ static hairlut_result check_text(const hairlut_exr_file *file)
     return code == EXR_ERR_SUCCESS ? HAIRLUT_OK : fail_exr(file, code, "header");
 }
 
-hairlut_result hairlut_exr_check_size(const hairlut_exr_file *file, int least_width, int least_height)
+hairlut_result hairlut_exr_check_size(const hairlut_exr_file *file, int least_width)
 {
-    const int most = HAIRLUT_EXR_LARGEST_SIDE;
-    if (file->width < least_width || file->height < least_height || file->width > most || file->height > most)
-        return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE,
-                                "size is %d x %d%s: expected %d x %d to %d x %d; bake the model again", file->width,
-                                file->height, file->width > most || file->height > most ? " or more" : "", least_width,
-                                least_height, most, most);
+    const int width = HAIRLUT_EXR_LARGEST_SIDE, height = HAIRLUT_EXR_MOST_ROWS, texels = HAIRLUT_EXR_MOST_TEXELS;
+    if (file->width < least_width || file->width > width || file->height > height || file->width > texels / file->height)
+        return hairlut_exr_fail(
+            file, HAIRLUT_ERROR_TABLE,
+            "size is %d x %d%s: expected %d to %d columns, at most %d rows and %d texels; bake the model "
+            "again",
+            file->width, file->height, file->width > width || file->height > height ? " or more" : "", least_width, width,
+            height, texels);
     return HAIRLUT_OK;
 }
 
@@ -202,6 +204,21 @@ static hairlut_result fail_attribute(const hairlut_exr_file *file, exr_result_t 
                                 "%s is missing: expected an attribute of type %s; bake the model again", attribute, type);
     return hairlut_exr_fail(file, HAIRLUT_ERROR_ATTRIBUTE, "%s is not of type %s, as expected; bake the model again",
                             attribute, type);
+}
+
+int hairlut_exr_has(const hairlut_exr_file *file, const char *attribute)
+{
+    const exr_attribute_t *found = NULL;
+    return exr_get_attribute_by_name(file->context, 0, attribute, &found) == EXR_ERR_SUCCESS;
+}
+
+int hairlut_exr_attribute(const hairlut_exr_file *file, int index, hairlut_exr_text *name)
+{
+    const exr_attribute_t *found = NULL;
+    if (exr_get_attribute_by_index(file->context, 0, EXR_ATTR_LIST_FILE_ORDER, index, &found) != EXR_ERR_SUCCESS)
+        return 0;
+    *name = text_of(found->name, found->name_length);
+    return 1;
 }
 
 hairlut_result hairlut_exr_int(const hairlut_exr_file *file, const char *attribute, int *value)

@@ -12,7 +12,13 @@
 #include "hairlut.h"
 #include "message.h"
 
-enum { HAIRLUT_EXR_NAME_SIZE = 200, HAIRLUT_EXR_LARGEST_SIDE = 4096, HAIRLUT_EXR_MODEL_SIZE = 64 };
+enum {
+    HAIRLUT_EXR_NAME_SIZE = 200,
+    HAIRLUT_EXR_LARGEST_SIDE = 4096, /* columns, and rows of theta_r */
+    HAIRLUT_EXR_MOST_ROWS = 65536,   /* of an image */
+    HAIRLUT_EXR_MOST_TEXELS = 1 << 24,
+    HAIRLUT_EXR_MODEL_SIZE = 64
+};
 
 typedef struct hairlut_exr_file {
     exr_context_t context;            /* NULL when closed */
@@ -32,8 +38,14 @@ hairlut_result hairlut_exr_open(hairlut_exr_file *file, const char *path, const 
                                 char *message);
 void hairlut_exr_close(hairlut_exr_file *file);
 
-/* The size must be at least least_width x least_height, and at most HAIRLUT_EXR_LARGEST_SIDE on a side. */
-hairlut_result hairlut_exr_check_size(const hairlut_exr_file *file, int least_width, int least_height);
+/* The image must have at least least_width columns, and at most HAIRLUT_EXR_LARGEST_SIDE, _MOST_ROWS and _MOST_TEXELS. */
+hairlut_result hairlut_exr_check_size(const hairlut_exr_file *file, int least_width);
+
+/* Whether the file has the attribute, of any type. */
+int hairlut_exr_has(const hairlut_exr_file *file, const char *attribute);
+
+/* The name of attribute `index`, which ends with a zero; 0 where there are not as many. */
+int hairlut_exr_attribute(const hairlut_exr_file *file, int index, hairlut_exr_text *name);
 
 hairlut_result hairlut_exr_int(const hairlut_exr_file *file, const char *attribute, int *value);
 hairlut_result hairlut_exr_string(const hairlut_exr_file *file, const char *attribute, hairlut_exr_text *value);

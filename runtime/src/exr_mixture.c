@@ -140,19 +140,20 @@ static hairlut_result read_axis(const hairlut_exr_file *file, const char *attrib
     return HAIRLUT_OK;
 }
 
-static hairlut_result read_axes(const hairlut_exr_file *file, int mirrored, float *theta_r, float *offset)
+static hairlut_result read_axes(const hairlut_exr_file *file, const hairlut_mixture_desc *desc, float *theta_r,
+                                float *offset)
 {
     const double largest_inclination = 1.571; /* more than pi/2 is in degrees */
     const hairlut_result result =
-        read_axis(file, "hairlut.axis.theta_r", file->height, -largest_inclination, largest_inclination, theta_r);
+        read_axis(file, "hairlut.axis.theta_r", desc->theta_r_count, -largest_inclination, largest_inclination, theta_r);
     if (result != HAIRLUT_OK)
         return result;
-    return read_axis(file, "hairlut.axis.offset", file->width, mirrored ? 0.0 : -1.0, 1.0, offset);
+    return read_axis(file, "hairlut.axis.offset", desc->offset_count, desc->mirrored ? 0.0 : -1.0, 1.0, offset);
 }
 
 static hairlut_result check_size(const hairlut_exr_file *file)
 {
-    const hairlut_result result = hairlut_exr_check_size(file, 1, 1);
+    const hairlut_result result = hairlut_exr_check_size(file, 1);
     if (result == HAIRLUT_OK && file->width * file->height > MOST_NODES)
         return hairlut_exr_fail(file, HAIRLUT_ERROR_TABLE,
                                 "size is %d x %d: expected at most %d nodes in all; bake the model again", file->width,
@@ -185,16 +186,17 @@ static hairlut_result read_nodes(const hairlut_exr_file *file, const char *const
         return hairlut_exr_fail(file, result, "%.200s", detail);
     float *texels = out->memory, *share = texels + values, *turn = share + values / 2, *theta_r = turn + values / 2;
     uint32_t digest;
-    (void)read_axes(file, out->desc.mirrored, theta_r, theta_r + rows); /* it was checked before */
+    (void)read_axes(file, &out->desc, theta_r, theta_r + out->desc.theta_r_count); /* it was checked before */
     result = hairlut_exr_pixels(file, channels, PER_LOBE * out->lobe_count, texels);
     if (result == HAIRLUT_OK)
         result = hairlut_exr_check_digest(file, texels, values, &digest);
     if (result != HAIRLUT_OK)
         return result;
     sort_channels(texels, nodes, out->lobe_count, share, turn);
-    const hairlut_mixture_desc desc = {sizeof desc, file->height, file->width,        theta_r, theta_r + rows,
-                                       share,       turn,         out->desc.mirrored, 0,       NULL};
-    out->desc = desc;
+    out->desc.theta_r = theta_r;
+    out->desc.offset = theta_r + out->desc.theta_r_count;
+    out->desc.share = share;
+    out->desc.turn = turn;
     return HAIRLUT_OK;
 }
 
@@ -218,11 +220,17 @@ static hairlut_result read_file(const hairlut_exr_file *file, const hairlut_allo
     for (int k = 0; k < out->lobe_count && result == HAIRLUT_OK; ++k)
         result = read_tables(file, out, &out->lobes[k]);
     if (result == HAIRLUT_OK)
-        result = hairlut_exr_expect(file, "hairlut.axes", "theta_r offset"); /* this reader knows no others */
+        result = hairlut_exr_read_mixture_axes(file, &out->parameters, &out->axes);
+    if (result == HAIRLUT_OK)
+        result = hairlut_exr_split_rows(file, &out->axes, 1, &out->desc.theta_r_count);
     if (result == HAIRLUT_OK)
         result = read_mirrored(file, &out->desc.mirrored);
+    out->desc.size = sizeof out->desc;
+    out->desc.offset_count = file->width;
+    out->desc.axis_count = out->axes.count;
+    out->desc.axes = out->axes.list;
     if (result == HAIRLUT_OK)
-        result = read_axes(file, out->desc.mirrored, NULL, NULL);
+        result = read_axes(file, &out->desc, NULL, NULL);
     return result == HAIRLUT_OK ? read_nodes(file, channels, allocator, out) : result;
 }
 

@@ -20,8 +20,10 @@ typedef struct hairlut_exr_mixture {
     int lobe_count;
     hairlut_exr_lobe lobes[HAIRLUT_MAX_LOBES];
     hairlut_mixture_desc desc; /* hairlut_model_create checks its shares and turns */
-    void *memory;              /* of desc's arrays; release it with the allocator, also after an error */
-    int missing;               /* the file could not be opened at all */
+    hairlut_exr_parameters parameters;
+    hairlut_exr_axes axes; /* of desc */
+    void *memory;          /* of desc's arrays; release it with the allocator, also after an error */
+    int missing;           /* the file could not be opened at all */
     char model[HAIRLUT_EXR_MODEL_SIZE];
 } hairlut_exr_mixture;
 

@@ -127,7 +127,11 @@ static hairlut_result read_header(const hairlut_exr_file *file, const hairlut_ex
     if (result == HAIRLUT_OK)
         result = hairlut_exr_check_channels(file, channels, kind->format);
     if (result == HAIRLUT_OK)
-        result = hairlut_exr_check_size(file, 4, 2);
+        result = hairlut_exr_check_size(file, 4);
+    if (result == HAIRLUT_OK)
+        result = hairlut_exr_read_table_axes(file, kind->parameters, &out->axes);
+    if (result == HAIRLUT_OK)
+        result = hairlut_exr_split_rows(file, &out->axes, 2, &t->height);
     if (result == HAIRLUT_OK)
         result = read_identity(file, kind, out);
     if (result == HAIRLUT_OK)
@@ -147,7 +151,8 @@ static hairlut_result read_header(const hairlut_exr_file *file, const hairlut_ex
     t->size = sizeof *t;
     t->warp_e = (float)e;
     t->width = file->width;
-    t->height = file->height;
+    t->axis_count = out->axes.count;
+    t->axes = out->axes.list;
     return result;
 }
 
@@ -164,12 +169,12 @@ static hairlut_result read_angles(const hairlut_exr_file *file, const hairlut_ta
     return HAIRLUT_OK;
 }
 
-static hairlut_result read_pairs(const hairlut_exr_file *file, const hairlut_table *t, float *texels, uint32_t *digest)
+static hairlut_result read_pairs(const hairlut_exr_file *file, float *texels, uint32_t *digest)
 {
     const hairlut_result result = hairlut_exr_pixels(file, channels, 2, texels);
     if (result != HAIRLUT_OK)
         return result;
-    return hairlut_exr_check_digest(file, texels, 2 * (size_t)t->width * (size_t)t->height, digest);
+    return hairlut_exr_check_digest(file, texels, 2 * (size_t)file->width * (size_t)file->height, digest);
 }
 
 /* The header is read before memory for the texels is allocated: the knots bound the width by the file's size. */
@@ -182,8 +187,7 @@ static hairlut_result read_texels(const hairlut_exr_file *file, const hairlut_ex
     if (result != HAIRLUT_OK)
         return hairlut_exr_fail(file, result, "%.200s", detail);
     out->table.texels = out->texels;
-    result = kind->format == 1 ? read_angles(file, &out->table, out->texels)
-                               : read_pairs(file, &out->table, out->texels, &out->digest);
+    result = kind->format == 1 ? read_angles(file, &out->table, out->texels) : read_pairs(file, out->texels, &out->digest);
     if (result != HAIRLUT_OK)
         return result;
     result = hairlut_validate(&out->table, detail);

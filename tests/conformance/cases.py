@@ -21,6 +21,63 @@ INFORMATION = ("colorInteropID", "hairlut.generator", "hairlut.parameters", "hai
 COMMON = ("format", "model", "table", "unit")
 OF_TABLE = ("angle", "azimuth", "theta_r_range", "domain", "warp", "cell", "knots")
 OF_MIXTURE = ("lobes", "lobe.direct", "lobe.multiple", "axes", "axis.theta_r", "axis.offset", "mirrored")
+OF_PARAMETERS = ("axes", "axis.beta_m", "axis.absorption", "axis.tilt", "parameter.beta_m", "parameter.tilt")
+NO_MIXTURE_AXES = (
+    "theta_r offset",
+    "beta_m absorption theta_r offset",
+    "beta_m absorption tilt tilt theta_r offset",
+    "beta_m absorption tilt",
+    "beta_m absorption tilt offset theta_r",
+    "theta_r offset beta_m absorption tilt",
+    "beta_m absorption tilt theta_r  offset",
+    "beta_m  absorption tilt theta_r offset",
+    "beta_m,absorption,tilt theta_r offset",
+    "beta_m absorption tilt phi theta_r offset",
+    "beta_m absorption tilt lobe theta_r offset",
+    "beta_m absorption tilt theta_r theta_r offset",
+    "beta_m absorption tilt 2nd theta_r offset",
+    "beta_m absorption tilt Gloss theta_r offset",
+    f"beta_m absorption tilt {'g' * 32} theta_r offset",
+    "beta_m absorption tilt a b c d e f theta_r offset",
+)
+NO_TABLE_AXES = (
+    "theta_r",
+    "beta_m",
+    "theta_r beta_m",
+    "beta_m beta_m theta_r",
+    "offset theta_r",
+    "beta_m  theta_r",
+    "beta_m theta_r offset",
+    "a b c d e theta_r",
+)
+PARAMETER_NUMBERS = (
+    ("parameter.beta_m", "0.9 0.1 0.3", {}),
+    ("parameter.beta_m", "0.1 0.1 0.1", {}),
+    ("parameter.beta_m", "0.1 0.9 0.05", {}),
+    ("parameter.beta_m", "0.1 0.9 0.95", {}),
+    ("parameter.beta_m", "0.1 0.9 nan", {}),
+    ("parameter.beta_m", "0.1 0.9", {}),
+    ("parameter.beta_m", "0.1 1e31 0.3", {}),
+    ("parameter.beta_m", "-1e31 0.9 0.3", {}),
+    ("parameter.tilt", "-4 -4.00000001 -4", {}),
+    ("parameter.tilt", "0 1e-31 0", {}),
+    ("axis.tilt", "-0.5", {}),
+    ("axis.tilt", "-4", {}),
+    ("axis.tilt", "-4 3", {}),
+    ("axis.tilt", "-1 -1", {}),
+)
+NO_NODES = (
+    "0.1",
+    "0.3 0.9",
+    "0.1 0.3 0.8",
+    "0.1 0.25 0.25 0.9",
+    "0.1 0.25 0.25000000001 0.9",
+    "0.9 0.25 0.1",
+    "0.1 nan 0.9",
+    "0.1 1e99 0.9",
+    "",
+    " ".join(f"{0.1 + 0.8 * k / 64:.9g}" for k in range(65)),
+)
 # what is no number, or no space between two
 NO_NUMBERS = (
     "1_0",
@@ -414,6 +471,109 @@ def mixtures() -> Iterator[Case]:
     yield "one node", MIXTURE, one_node(), None
 
 
+def parameters() -> Iterator[Case]:
+    """What files of a model over parameters say of them. The mixture depends on beta_m and absorption, not on
+    tilt; direct_theta on beta_m, direct_phi on tilt and absorption."""
+    yield from attributes(MIXTURE, OF_PARAMETERS)
+    yield from attributes(THETA, ("axis.beta_m",))
+    for name in ("axis.beta_m", "axis.absorption", "parameter.beta_m", "parameter.tilt"):
+        yield from separators(MIXTURE, f"hairlut.{name}")
+    for name, _, edit, _ in separators(THETA, "hairlut.axis.beta_m"):
+        yield name, THETA, edit, THETA
+    axes = "hairlut.axes"
+    for text in NO_MIXTURE_AXES:
+        yield f"axes of a mixture {text!r}", MIXTURE, Edit(header={axes: text}), axes
+    more = "beta_m absorption tilt gloss theta_r offset"
+    yield "a name more", MIXTURE, Edit(header={axes: more}), "hairlut.parameter.gloss is missing"
+    for text in NO_TABLE_AXES:
+        yield f"axes of a table {text!r}", THETA, Edit(header={axes: text}), axes
+    yield "an unknown name in a table", THETA, Edit(header={axes: "beta_m gloss theta_r"}), "gloss"
+    yield "a table without axes", THETA, Edit(drop=(axes,)), axes
+    plain = Edit(
+        drop=(axes, "hairlut.axis.beta_m"), channels=lambda c: {n: p[:5] for n, p in c.items()}, digest=True
+    )
+    yield "a table with other texels", THETA, plain, THETA
+    yield "axes that are theta_r", MULTIPLE, Edit(header={axes: "theta_r"}), None
+    yield (
+        "an axis that nothing names",
+        MULTIPLE,
+        Edit(header={"hairlut.axis.beta_m": "0.1 0.9"}),
+        "hairlut.axes",
+    )
+    yield "another axis", THETA, Edit(header={"hairlut.axis.tilt": "-4 4"}), "hairlut.axes"
+    yield "an axis of no parameter", MIXTURE, Edit(header={"hairlut.axis.gloss": "0 1"}), "hairlut.axes"
+    yield (
+        "a parameter without axes",
+        MIXTURE,
+        Edit(header={"hairlut.parameter.gloss": "0 1 0"}),
+        "hairlut.axes",
+    )
+    yield "information on parameters", MIXTURE, Edit(header={"hairlut.parameters": "tilt"}), None
+    for name, nodes, of_range in PARAMETER_NUMBERS:
+        attribute = f"hairlut.{name}"
+        yield f"{name} {nodes}", MIXTURE, Edit(header={attribute: nodes} | of_range), attribute
+    for nodes in NO_NODES:
+        yield (
+            f"nodes of a mixture {nodes}",
+            MIXTURE,
+            Edit(header={"hairlut.axis.beta_m": nodes}),
+            "hairlut.axis.beta_m",
+        )
+        yield f"nodes of a table {nodes}", THETA, Edit(header={"hairlut.axis.beta_m": nodes}), "beta_m"
+    yield (
+        "the standard value of a table",
+        THETA,
+        Edit(header={"hairlut.axis.beta_m": "0.3"}),
+        "hairlut.axis.beta_m",
+    )
+    yield "another range", MIXTURE, Edit(header=wider), THETA
+    same_floats = {"hairlut.axis.beta_m": "0.1000000000001 0.25 0.9"}
+    yield "nodes that are the ends as floats", THETA, Edit(header=same_floats), None
+    yield "another standard value", MIXTURE, Edit(header={"hairlut.parameter.beta_m": "0.1 0.9 0.1"}), None
+    for file, rows in ((MIXTURE, 47), (THETA, 14)):
+        fewer = each(lambda c, rows=rows: c[:rows], digest=True)
+        yield f"{file} with {rows} rows", file, fewer, "rows"
+    short = each(lambda c: c[:36], digest=True)
+    yield "three rows of theta_r a node", MIXTURE, short, "hairlut.axis.theta_r"
+    yield "one row of theta_r a node", THETA, each(lambda c: c[:3], digest=True), "size"
+    yield "two nodes fewer", THETA, Edit(header={"hairlut.axis.beta_m": "0.1 0.9"}), "rows"
+    many = np.zeros((12291, 4), np.float32)
+    yield "4097 rows of theta_r a node", THETA, each(lambda c: many, digest=True), "4096"
+    yield "65537 rows", THETA, each(lambda c: np.zeros((65537, 4), np.float32)), "65536"
+    yield "too many texels", THETA, each(lambda c: np.zeros((8193, 2049), np.float32)), "16777216"
+    yield (
+        "too many nodes with parameters",
+        MIXTURE,
+        each(lambda c: np.ones((48 * 43, 128), np.float32)),
+        "size",
+    )
+    yield "five axes of a mixture", MIXTURE, Edit(header=five), "hairlut.axes"
+    yield "no share at a node", MIXTURE, Edit(channels=no_share_at_a_node, digest=True), MIXTURE
+    yield "rows turned over", MIXTURE, each(lambda c: c[::-1]), "hairlut.digest"
+    yield "without a mixture", MIXTURE, Edit(whole=gone), "hairlut.format is 2"
+
+
+def wider(header: dict) -> dict:
+    """A range that a table's nodes do not span."""
+    return {"hairlut.parameter.beta_m": "0.1 1.0 0.3", "hairlut.axis.beta_m": "0.1 0.25 1.0"}
+
+
+def five(header: dict) -> dict:
+    """A mixture over five parameters."""
+    names = [f"p{k}" for k in range(5)]
+    return {
+        "hairlut.axes": " ".join([*header["hairlut.axes"].split()[:3], *names, "theta_r offset"]),
+        **{f"hairlut.parameter.{name}": "0 1 0" for name in names},
+        **{f"hairlut.axis.{name}": "0 1" for name in names},
+    }
+
+
+def no_share_at_a_node(channels: Channels) -> Channels:
+    for name in ("direct.share", "multiple.share"):
+        channels[name][-1, -1] = 0
+    return channels
+
+
 def scaled_shares(channels: Channels) -> Channels:
     return {n: c * np.float32(1024) if n.endswith("share") else c for n, c in channels.items()}
 
@@ -444,6 +604,11 @@ def of_format_2() -> list[Case]:
         *attributes(THETA, COMMON + OF_TABLE), *attributes(MIXTURE, COMMON + OF_MIXTURE),
         *numbers(), *tables(format_2=True), *format_2(), *mixtures(),
     ]  # fmt: skip
+
+
+def of_parameters() -> list[Case]:
+    """Every case of a directory of a model over parameters."""
+    return list(parameters())
 
 
 def of_format_1() -> list[Case]:

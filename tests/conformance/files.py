@@ -14,6 +14,8 @@ from hairlut.mixture import Mixture
 from hairlut.model import BakedLobe, BakedModel
 from hairlut.slopes import derived
 from hairlut.table import Table
+from precompute import parametric
+from precompute.conftest import LUTS
 
 Channels = dict[str, np.ndarray]
 FORMAT_1_CELL = "parabola limit=0.9"
@@ -88,6 +90,29 @@ def write_format_2(directory: Path, source: Path) -> Path:
     """The model's files."""
     directory.mkdir()
     exr.write_model(directory, model(source))
+    return directory
+
+
+def over_parameters() -> BakedModel:
+    """A model of the same files that depends on parameters: each table on others, and the mixture on two."""
+    random, depends = np.random.default_rng(8), parametric.axes("beta_m", "absorption")
+    given = model(LUTS / "fitted").mixture
+    shape = 2, *(len(axis.nodes) for axis in depends), *given.share.shape[1:]
+    share = random.uniform(0.1, 1.0, shape).astype(np.float32).astype(float)
+    turn = random.uniform(-4.0, 4.0, shape).astype(np.float32).astype(float)
+    mixture = replace(given, share=share, turn=turn, axes=depends)
+    theta = parametric.table("direct_theta", parametric.axes("beta_m"), random)
+    phi = parametric.table("direct_phi", parametric.axes("tilt", "absorption"), random)
+    lobes = (
+        BakedLobe("direct", theta, phi),
+        BakedLobe("multiple", parametric.table("multiple_theta", (), random), None),
+    )
+    return BakedModel("parametric", lobes, mixture, {}, parametric.PARAMETERS)
+
+
+def write_over_parameters(directory: Path) -> Path:
+    """Its files."""
+    exr.write_model(directory, over_parameters())
     return directory
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Both readers on 1,000 files damaged at random: neither crashes, and they take and refuse the same."""
+"""Both readers on 1,500 files damaged at random: neither crashes, and they take and refuse the same."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from conformance.test_readers import loader, read_in_c, read_in_python, same_sam
 from runtime.c_library import ROOT
 
 pytestmark = pytest.mark.usefixtures("loader")
-COUNT = 1000
+COUNTS = {"plain": 1000, "parameters": 500}
 FILES = (cases.THETA, cases.PHI, cases.MULTIPLE, cases.MIXTURE)
 
 
@@ -34,19 +34,23 @@ def damaged(data: bytes, random: np.random.Generator) -> bytes:
     return bytes(out)
 
 
-@pytest.fixture(scope="module")
-def good(tmp_path_factory) -> Path:
+def small(directory: Path, kind: str) -> Path:
     """Small files that are not compressed: most bytes are header, and the others texels."""
-    directory = files.write_small(tmp_path_factory.mktemp("small") / "model", ROOT / "luts" / "fitted")
+    if kind == "parameters":
+        files.write_over_parameters(directory)
+    else:
+        files.write_small(directory, ROOT / "luts" / "fitted")
     for name in FILES:
         cases.compression("NO").apply(directory / name)
     return directory
 
 
-def test_readers_agree_on_damaged_files(good):
+@pytest.mark.parametrize("kind", COUNTS)
+def test_readers_agree_on_damaged_files(tmp_path, kind):
+    good, count = small(tmp_path / "model", kind), COUNTS[kind]
     random, disagreed, taken = np.random.default_rng(20), [], 0
     whole = {name: (good / name).read_bytes() for name in FILES}
-    for number in range(COUNT):
+    for number in range(count):
         name = FILES[number % len(FILES)]
         (good / name).write_bytes(damaged(whole[name], random))
         (ours, python), (theirs, c) = read_in_python(good), read_in_c(good)
@@ -57,4 +61,4 @@ def test_readers_agree_on_damaged_files(good):
             same_samples(ours, theirs)
         (good / name).write_bytes(whole[name])
     assert not disagreed, "\n".join(disagreed)
-    assert COUNT / 50 < taken < COUNT / 2
+    assert count / 50 < taken < count / 2

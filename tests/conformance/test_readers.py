@@ -15,6 +15,7 @@ from hairlut.errors import HairlutError
 from runtime import c_library
 
 pytestmark = pytest.mark.usefixtures("loader")
+PARAMETERS = 24  # names the directory of a model over parameters, beside those of formats 1 and 2
 THETA_R, PHI_R = np.float32([-1.6, -0.7, 0.1, 1.2]), np.float32(0.5)
 U = np.random.default_rng(3).random((200, 3)).astype(np.float32)
 
@@ -33,6 +34,7 @@ def good(tmp_path_factory) -> dict[int, Path]:
     return {
         1: files.write_format_1(folder / "1", source),
         2: files.write_format_2(folder / "2", source),
+        PARAMETERS: files.write_over_parameters(folder / "parametric"),
     }
 
 
@@ -68,22 +70,39 @@ def agree(directory: Path, file: str, said: str | None) -> None:
 
 
 def same_samples(ours, theirs) -> None:
-    """Of the whole hair, up to the rounding of floats."""
+    """Of the whole hair, up to the rounding of floats; also at random parameters."""
     theta_r = np.repeat(THETA_R, len(U) // len(THETA_R))
     offset = np.linspace(-1, 1, len(U), dtype=np.float32)
-    theta_i, phi_i, pdf = ours.sample(theta_r, PHI_R, U.astype(float), offset)
-    other = theirs.sample_hair(theta_r, PHI_R, *U.T, offset=offset)
+    near(
+        ours.sample(theta_r, PHI_R, U.astype(float), offset),
+        theirs.sample_hair(theta_r, PHI_R, *U.T, offset=offset),
+    )
+    if ours.parameters:
+        random = np.random.default_rng(5)
+        ranges = [(p.least, p.most) for p in ours.parameters]
+        strands = random.uniform(*np.transpose(ranges), (len(U), len(ranges))).astype(np.float32)
+        each = {p.name: strands[:, k].astype(float) for k, p in enumerate(ours.parameters)}
+        near(
+            ours.sample(theta_r, PHI_R, U.astype(float), offset, each),
+            theirs.sample_strand(strands, theta_r, PHI_R, *U.T, offset=offset),
+        )
+
+
+def near(ours, other) -> None:
+    theta_i, phi_i, pdf = ours
     np.testing.assert_allclose(other["theta_i"], theta_i, atol=2e-5)
     np.testing.assert_allclose(np.cos(other["phi_i"] - phi_i), 1, atol=1e-6)
     np.testing.assert_allclose(other["pdf_angle"], pdf, rtol=2e-3)
 
 
 def named(of_format: int) -> list:
-    given = cases.of_format_1() if of_format == 1 else cases.of_format_2()
+    given = {1: cases.of_format_1, 2: cases.of_format_2, PARAMETERS: cases.of_parameters}[of_format]()
     return [pytest.param(of_format, *case, id=f"{of_format}-{case[1]}-{case[0]}") for case in given]
 
 
-@pytest.mark.parametrize(("of_format", "name", "file", "edit", "said"), [*named(1), *named(2)])
+@pytest.mark.parametrize(
+    ("of_format", "name", "file", "edit", "said"), [*named(1), *named(2), *named(PARAMETERS)]
+)
 def test_both_readers_agree(good, tmp_path, of_format, name, file, edit, said):
     directory = tmp_path / "model"
     shutil.copytree(good[of_format], directory)
@@ -91,7 +110,7 @@ def test_both_readers_agree(good, tmp_path, of_format, name, file, edit, said):
     agree(directory, file, said)
 
 
-@pytest.mark.parametrize("of_format", [1, 2])
+@pytest.mark.parametrize("of_format", [1, 2, PARAMETERS])
 def test_the_good_directories_are_accepted(good, of_format):
     agree(good[of_format], "", None)
 

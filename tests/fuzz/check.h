@@ -50,6 +50,31 @@ static inline void check_lobe(const hairlut_model *model, int lobe, const query 
     REQUIRE(u[0] >= 0.0f && u[0] <= 1.0f && u[1] >= 0.0f && u[1] <= 1.0f);
 }
 
+/* Each parameter at the same part of its range; beyond it for parts below 0 and above 1. */
+static inline void strand_at(const hairlut_model *model, float place, float strand[HAIRLUT_MAX_PARAMETERS])
+{
+    for (int p = 0; p < hairlut_parameter_count(model); ++p) {
+        float least, most, standard;
+        REQUIRE(hairlut_parameter_range(model, p, &least, &most, &standard));
+        REQUIRE(least <= standard && standard <= most);
+        strand[p] = least + place * (most - least);
+    }
+}
+
+static inline void check_strand(const hairlut_model *model, const query *q, float place)
+{
+    float strand[HAIRLUT_MAX_PARAMETERS];
+    strand_at(model, place, strand);
+    const int no_number = hairlut_parameter_count(model) > 0 && isnan(strand[0]);
+    const hairlut_sample s =
+        hairlut_sample_strand(model, strand, NULL, q->theta_r, q->phi_r, q->offset, q->u_lobe, q->u_theta, q->u_phi);
+    const float pdf = hairlut_pdf_strand(model, strand, NULL, q->theta_r, q->phi_r, q->offset, s.theta_i, s.phi_i);
+    check_sample(s);
+    REQUIRE(isfinite(pdf) && pdf >= 0.0f);
+    REQUIRE(!no_number || (s.pdf_angle == 0.0f && pdf == 0.0f));
+    REQUIRE(no_number || !is_finite_query(q) || s.pdf_angle > 0.0f);
+}
+
 static inline void check_query(const hairlut_model *model, const query *q)
 {
     const hairlut_sample s =
@@ -60,6 +85,11 @@ static inline void check_query(const hairlut_model *model, const query *q)
     REQUIRE(!is_finite_query(q) || s.pdf_angle > 0.0f);
     for (int lobe = -1; lobe <= hairlut_lobe_count(model); ++lobe)
         check_lobe(model, lobe, q);
+    if (hairlut_parameter_count(model) > 0) {
+        static const float places[] = {0.0f, 0.37f, 1.0f, -INFINITY, 3.0f, NAN};
+        for (size_t k = 0; k < sizeof places / sizeof *places; ++k)
+            check_strand(model, q, places[k]);
+    }
 }
 
 static inline void check_model(const hairlut_model *model)

@@ -8,7 +8,16 @@
 
 #include "check.h"
 
-enum { MOST_LOBES = 4, MOST_WIDTH = 80, MOST_HEIGHT = 8, MOST_NODES = 4, DESCRIBED_TABLES = 2 * MOST_LOBES };
+enum {
+    MOST_LOBES = 4,
+    MOST_WIDTH = 80,
+    MOST_HEIGHT = 8,
+    MOST_NODES = 4,
+    DESCRIBED_TABLES = 2 * MOST_LOBES,
+    PARAMETERS = 2,
+    MOST_VALUES = 3,                        /* nodes of a parameter */
+    MOST_BLOCKS = MOST_VALUES * MOST_VALUES /* of rows */
+};
 
 typedef struct reader {
     const uint8_t *data;
@@ -51,9 +60,14 @@ static inline float take_between(reader *r, float low, float high)
 
 /* Descriptors and what they point to. */
 typedef struct described {
-    float texels[DESCRIBED_TABLES][2 * MOST_WIDTH * MOST_HEIGHT];
+    float texels[DESCRIBED_TABLES][2 * MOST_WIDTH * MOST_HEIGHT * MOST_BLOCKS];
     float theta_r[MOST_NODES], offset[MOST_NODES];
-    float share[MOST_LOBES * MOST_NODES * MOST_NODES], turn[MOST_LOBES * MOST_NODES * MOST_NODES];
+    float share[MOST_LOBES * MOST_NODES * MOST_NODES * MOST_BLOCKS],
+        turn[MOST_LOBES * MOST_NODES * MOST_NODES * MOST_BLOCKS];
+    hairlut_parameter parameters[PARAMETERS];
+    float values[PARAMETERS][MOST_VALUES];
+    hairlut_parameter_nodes axes[PARAMETERS]; /* over all parameters: those of the mixture */
+    hairlut_parameter_nodes own[DESCRIBED_TABLES][PARAMETERS];
     char names[MOST_LOBES][8];
     hairlut_table tables[DESCRIBED_TABLES];
     hairlut_lobe_desc lobes[MOST_LOBES];
@@ -74,9 +88,49 @@ static inline void take_row(reader *r, float *row, int width, float low, float h
     }
 }
 
-/* Flags: 1 any range of theta_r, 2 any domain, 4 any warp, 8 any texels */
-static inline hairlut_table take_table(reader *r, float *texels, int is_phi, int flags)
+/* Parameters with their nodes; flag 16: any numbers */
+static inline void take_parameters(reader *r, described *d, int any)
 {
+    static const char *const names[PARAMETERS] = {"beta_m", "absorption"};
+    for (int p = 0; p < PARAMETERS; ++p) {
+        const int count = any ? take_byte(r) % (MOST_VALUES + 1) : 2 + take_byte(r) % (MOST_VALUES - 1);
+        const float least = any ? take_float(r) : take_between(r, -2.0f, 2.0f),
+                    most = any ? take_float(r) : least + take_between(r, 0.1f, 3.0f),
+                    standard = any ? take_float(r) : least + 0.5f * (most - least);
+        const hairlut_parameter parameter = {sizeof parameter, names[p], least, most, standard};
+        const int number = any && take_byte(r) % 8 == 0 ? (int)take_byte(r) - 1 : p;
+        const hairlut_parameter_nodes nodes = {sizeof nodes, number, count, d->values[p]};
+        d->parameters[p] = parameter;
+        for (int k = 0; k < count; ++k)
+            d->values[p][k] = k == 0 ? least : k == count - 1 ? most : any ? take_float(r) : least + 0.3f * (most - least);
+        d->axes[p] = nodes;
+    }
+}
+
+/* Some of them, by the bits of a byte, for a table; returns how many. */
+static inline int take_axes(reader *r, const described *d, hairlut_parameter_nodes *own)
+{
+    const int which = take_byte(r);
+    int count = 0;
+    for (int p = 0; p < PARAMETERS; ++p)
+        if (which >> p & 1)
+            own[count++] = d->axes[p];
+    return count;
+}
+
+static inline int blocks_of(const hairlut_parameter_nodes *axes, int count)
+{
+    int blocks = 1;
+    for (int k = 0; k < count; ++k)
+        blocks *= axes[k].count;
+    return blocks;
+}
+
+/* Flags: 1 any range of theta_r, 2 any domain, 4 any warp, 8 any texels, 128 over parameters */
+static inline hairlut_table take_table(reader *r, described *d, int number, int flags)
+{
+    const int is_phi = number % 2;
+    float *texels = d->texels[number];
     hairlut_table t;
     t.size = sizeof t;
     t.texels = texels;
@@ -88,9 +142,9 @@ static inline hairlut_table take_table(reader *r, float *texels, int is_phi, int
     t.domain_max = flags & 2 ? take_float(r) : is_phi ? 6.28318548f : 1.57079637f;
     t.warp = flags & 4 ? (hairlut_warp)(take_byte(r) % 3) : (hairlut_warp)(take_byte(r) % 2);
     t.warp_e = flags & 4 ? take_float(r) : ldexpf(1.0f, -(take_byte(r) % 39));
-    t.axis_count = 0;
-    t.axes = NULL;
-    for (int j = 0; j < t.height && t.width > 1; ++j) {
+    t.axis_count = flags & 128 ? take_axes(r, d, d->own[number]) : 0;
+    t.axes = d->own[number];
+    for (int j = 0; j < t.height * blocks_of(t.axes, t.axis_count) && t.width > 1; ++j) {
         if (flags & 8)
             take(r, texels + 2 * j * t.width, 2 * sizeof(float) * (size_t)t.width);
         else
@@ -105,20 +159,23 @@ static inline void take_nodes(reader *r, float *nodes, int count, float low, flo
         nodes[k] = any ? take_float(r) : count == 1 ? 0.0f : low + (high - low) * (float)k / (float)(count - 1);
 }
 
-/* Lobes of tables of their own, or of those of the lobe before. Flags as of take_table, and 16 any nodes, 32 any shares
- * and turns. */
+/* Lobes of tables of their own, or of those of the lobe before. Flags as of take_table, and 16 any nodes and parameters, 32 any
+ * shares and turns. */
 static inline void describe(reader *r, described *d, int flags)
 {
     const int lobes = 1 + take_byte(r) % MOST_LOBES, rows = 1 + take_byte(r) % MOST_NODES,
               columns = 1 + take_byte(r) % MOST_NODES;
     const int mirrored = take_byte(r) % (flags & 16 ? 3 : 2);
+    if (flags & 128)
+        take_parameters(r, d, flags & 16);
+    const int axis_count = flags & 128 ? PARAMETERS : 0, blocks = blocks_of(d->axes, axis_count);
     for (int k = 0; k < lobes; ++k) {
         const int shape = take_byte(r), own = k == 0 || shape & 1;
         snprintf(d->names[k], sizeof d->names[k], "lobe%d", k % 10);
         if (own)
-            d->tables[2 * k] = take_table(r, d->texels[2 * k], 0, flags);
+            d->tables[2 * k] = take_table(r, d, 2 * k, flags);
         if (shape & 2)
-            d->tables[2 * k + 1] = take_table(r, d->texels[2 * k + 1], 1, flags);
+            d->tables[2 * k + 1] = take_table(r, d, 2 * k + 1, flags);
         const hairlut_lobe_desc lobe = {sizeof lobe, d->names[k], own ? &d->tables[2 * k] : d->lobes[k - 1].theta,
                                         shape & 2 ? &d->tables[2 * k + 1]
                                         : own     ? NULL
@@ -129,14 +186,14 @@ static inline void describe(reader *r, described *d, int flags)
     }
     take_nodes(r, d->theta_r, rows, -1.5f, 1.5f, flags & 16);
     take_nodes(r, d->offset, columns, mirrored ? 0.0f : -1.0f, 1.0f, flags & 16);
-    for (int k = 0; k < lobes * rows * columns; ++k) {
+    for (int k = 0; k < lobes * blocks * rows * columns; ++k) {
         d->share[k] = flags & 32 ? take_float(r) : (float)(1 + take_byte(r));
         d->turn[k] = flags & 32 ? take_float(r) : take_between(r, -25.0f, 25.0f);
     }
     const hairlut_mixture_desc mixture = {sizeof mixture, rows,    columns,  d->theta_r, d->offset,
-                                          d->share,       d->turn, mirrored, 0,          NULL};
+                                          d->share,       d->turn, mirrored, axis_count, d->axes};
     d->mixture = mixture;
-    const hairlut_model_desc desc = {sizeof desc, lobes, d->lobes, &d->mixture, 0, NULL};
+    const hairlut_model_desc desc = {sizeof desc, lobes, d->lobes, &d->mixture, axis_count, d->parameters};
     d->desc = desc;
 }
 

@@ -44,6 +44,13 @@ static const float theta[16] = {-1.57079637f, 1.0f, -0.5f, 1.0f, 0.5f, 1.0f, 1.5
 static const hairlut_table straight = {sizeof straight,      theta, 4, 2,   -1.5f, 1.5f, -1.57079637f, 1.57079637f,
                                        HAIRLUT_WARP_OCTAVES, 1e-6f, 0, NULL};
 
+/* Those of the corpus' tables (tests/conformance/files.py) */
+static const hairlut_exr_parameters parameters = {3,
+                                                  {"beta_m", "absorption", "tilt"},
+                                                  {{sizeof(hairlut_parameter), "beta_m", 0.1f, 0.9f, 0.3f},
+                                                   {sizeof(hairlut_parameter), "absorption", 0.0f, 5.0f, 0.5f},
+                                                   {sizeof(hairlut_parameter), "tilt", -4.0f, 4.0f, -1.0f}}};
+
 /* A model of these lobes: tables that were accepted give one; a mixture's shares and turns are checked here. */
 static void use(const hairlut_model_desc *desc, int is_mixture)
 {
@@ -62,13 +69,13 @@ static hairlut_result load_table(const blob *file, const exr_context_initializer
 {
     const int is_azimuth = mentions(file, "direct_phi");
     const hairlut_exr_kind kind = {is_azimuth ? "direct_phi" : "direct_theta", is_azimuth, mentions(file, "dxdu") ? 2 : 1,
-                                   "as told"};
-    hairlut_exr_table table;
+                                   "as told", &parameters};
+    static hairlut_exr_table table;
     const hairlut_result result = hairlut_exr_read_table(&kind, "fuzz.exr", source, allocator, &table, message);
     if (result == HAIRLUT_OK) {
         const hairlut_lobe_desc lobe = {sizeof lobe, "lobe", is_azimuth ? &straight : &table.table,
                                         is_azimuth ? &table.table : NULL, table.azimuth};
-        const hairlut_model_desc desc = {sizeof desc, 1, &lobe, NULL, 0, NULL};
+        const hairlut_model_desc desc = {sizeof desc, 1, &lobe, NULL, parameters.count, parameters.list};
         use(&desc, 0);
     }
     hairlut_release(allocator, table.texels);
@@ -86,7 +93,8 @@ static hairlut_result load_mixture(const exr_context_initializer_t *source, cons
         lobes[k] = lobe;
     }
     if (result == HAIRLUT_OK) {
-        const hairlut_model_desc desc = {sizeof desc, mixture.lobe_count, lobes, &mixture.desc, 0, NULL};
+        const hairlut_model_desc desc = {sizeof desc,   mixture.lobe_count,       lobes,
+                                         &mixture.desc, mixture.parameters.count, mixture.parameters.list};
         use(&desc, 1);
     }
     hairlut_release(allocator, mixture.memory);

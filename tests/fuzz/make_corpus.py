@@ -13,7 +13,8 @@ CORPUS = Path(__file__).resolve().parent / "corpus"
 
 
 def write_loader() -> None:
-    """Tables of both formats and a mixture, in every compression that OpenEXR has."""
+    """Tables of both formats and a mixture, in every compression that OpenEXR has; and those of a model over
+    parameters."""
     folder = CORPUS / "loader"
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as temporary:
@@ -27,6 +28,11 @@ def write_loader() -> None:
             copy = folder / f"{Path(file).stem}_format_1.exr"
             copy.write_bytes((directory / file).read_bytes())
             files.to_format_1(copy)
+        over = files.write_over_parameters(Path(temporary) / "parametric")
+        for file in (cases.THETA, cases.PHI, cases.MIXTURE):
+            copy = folder / f"{Path(file).stem}_parameters.exr"
+            copy.write_bytes((over / file).read_bytes())
+            cases.compression("NO").apply(copy)
 
 
 def write_random(name: str, first: tuple[int, ...]) -> None:
@@ -43,5 +49,5 @@ def write_random(name: str, first: tuple[int, ...]) -> None:
 
 if __name__ == "__main__":
     write_loader()
-    write_random("memory", (0, 1, 2, 4, 8, 16, 32, 64, 63))
-    write_random("round_trip", (0, 32))
+    write_random("memory", (0, 1, 2, 4, 8, 16, 32, 64, 63, 128, 144, 160, 192))
+    write_random("round_trip", (0, 32, 128, 160))

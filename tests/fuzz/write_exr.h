@@ -126,16 +126,36 @@ static inline FILE *create_file(const char *directory, const char *table)
     return file;
 }
 
-/* Returns the digest. */
-static inline uint32_t write_table(const char *directory, const char *name, const hairlut_table *t, const char *azimuth)
+/* hairlut.axes, ending with `last`, and the nodes of those that the file depends on */
+static inline void put_axes(FILE *file, const described *d, const hairlut_parameter_nodes *axes, int count, const char *last)
 {
+    char names[80] = "", attribute[80], text[400];
+    double nodes[MOST_VALUES];
+    for (int k = 0; k < count; ++k) {
+        const char *name = d->parameters[axes[k].parameter].name;
+        for (int i = 0; i < axes[k].count; ++i)
+            nodes[i] = axes[k].values[i];
+        snprintf(attribute, sizeof attribute, "hairlut.axis.%s", name);
+        put_text(file, attribute, "%s", listed(text, sizeof text, nodes, axes[k].count));
+        strcat(strcat(names, name), " ");
+    }
+    put_text(file, "hairlut.axes", "%s%s", names, last);
+}
+
+/* Returns the digest. */
+static inline uint32_t write_table(const char *directory, const described *d, const char *name, const hairlut_table *t,
+                                   const char *azimuth)
+{
+    const int rows = t->height * blocks_of(t->axes, t->axis_count);
     static const char *const channels[] = {"Y", "dxdu"};
     static char text[1 << 15];
     double knots[MOST_WIDTH];
     const int octaves = t->warp == HAIRLUT_WARP_OCTAVES;
     const hairlut_warp_scale scale = hairlut_scale_warp(t->warp, t->warp_e, t->width);
     FILE *file = create_file(directory, name);
-    put_start(file, channels, 2, t->width, t->height, name);
+    put_start(file, channels, 2, t->width, rows, name);
+    if (t->axis_count > 0)
+        put_axes(file, d, t->axes, t->axis_count, "theta_r");
     put_text(file, "hairlut.angle", strcmp(azimuth, "none") == 0 ? "theta_i" : "phi");
     put_text(file, "hairlut.azimuth", "%s", azimuth);
     put_text(file, "hairlut.warp", octaves ? "octaves e=%.17g" : "uniform", (double)t->warp_e);
@@ -146,7 +166,7 @@ static inline uint32_t write_table(const char *directory, const char *name, cons
     for (int i = 0; i < t->width; ++i)
         knots[i] = hairlut_warp_u(t->warp, &scale, t->width, i);
     put_text(file, "hairlut.knots", "%s", listed(text, sizeof text, knots, t->width));
-    const uint32_t digest = put_texels(file, t->texels, 2, t->width, t->height);
+    const uint32_t digest = put_texels(file, t->texels, 2, t->width, rows);
     REQUIRE(fclose(file) == 0);
     return digest;
 }
@@ -154,7 +174,7 @@ static inline uint32_t write_table(const char *directory, const char *name, cons
 /* The files of a model. A table is named after the first lobe that has it. */
 static inline void write_files(const char *directory, const described *d)
 {
-    static float texels[2 * MOST_LOBES * MOST_NODES * MOST_NODES];
+    static float texels[2 * MOST_LOBES * MOST_NODES * MOST_NODES * MOST_BLOCKS];
     const hairlut_mixture_desc *m = &d->mixture;
     char channel_names[2 * MOST_LOBES][16], names[2 * MOST_LOBES][16], text[4096];
     const char *channels[2 * MOST_LOBES];
@@ -167,7 +187,7 @@ static inline void write_files(const char *directory, const described *d)
             const int owner = tables[n] ? (int)(tables[n] - d->tables) / 2 : k;
             snprintf(names[2 * k + n], sizeof names[0], "lobe%d_%s", owner % 10, n ? "phi" : "theta");
             if (tables[n])
-                digests[2 * k + n] = write_table(directory, names[2 * k + n], tables[n],
+                digests[2 * k + n] = write_table(directory, d, names[2 * k + n], tables[n],
                                                  n == 0                                 ? "none"
                                                  : lobe->azimuth == HAIRLUT_AZIMUTH_SUM ? "sum"
                                                                                         : "difference");
@@ -175,9 +195,10 @@ static inline void write_files(const char *directory, const described *d)
             channels[2 * k + n] = channel_names[2 * k + n];
         }
     }
-    const int count = 2 * d->desc.lobe_count, grid = m->theta_r_count * m->offset_count;
+    const int count = 2 * d->desc.lobe_count, rows = m->theta_r_count * blocks_of(m->axes, m->axis_count);
+    const int grid = rows * m->offset_count;
     FILE *file = create_file(directory, "mixture");
-    put_start(file, channels, count, m->offset_count, m->theta_r_count, "mixture");
+    put_start(file, channels, count, m->offset_count, rows, "mixture");
     text[0] = '\0';
     for (int k = 0; k < d->desc.lobe_count; ++k)
         strcat(strcat(text, k ? " " : ""), d->names[k]);
@@ -191,7 +212,14 @@ static inline void write_files(const char *directory, const described *d)
         else
             put_text(file, attribute, "%s %08lx", names[2 * k], (unsigned long)digests[2 * k]);
     }
-    put_text(file, "hairlut.axes", "theta_r offset");
+    put_axes(file, d, m->axes, m->axis_count, "theta_r offset");
+    for (int p = 0; p < d->desc.parameter_count; ++p) {
+        const hairlut_parameter *parameter = &d->parameters[p];
+        char attribute[32];
+        snprintf(attribute, sizeof attribute, "hairlut.parameter.%s", parameter->name);
+        put_text(file, attribute, "%.17g %.17g %.17g", (double)parameter->least, (double)parameter->most,
+                 (double)parameter->standard);
+    }
     for (int k = 0; k < m->theta_r_count; ++k)
         nodes[k] = m->theta_r[k];
     put_text(file, "hairlut.axis.theta_r", "%s", listed(text, sizeof text, nodes, m->theta_r_count));
@@ -204,7 +232,7 @@ static inline void write_files(const char *directory, const described *d)
             texels[node * count + 2 * k] = m->share[k * grid + node];
             texels[node * count + 2 * k + 1] = m->turn[k * grid + node];
         }
-    put_texels(file, texels, count, m->offset_count, m->theta_r_count);
+    put_texels(file, texels, count, m->offset_count, rows);
     REQUIRE(fclose(file) == 0);
 }
 

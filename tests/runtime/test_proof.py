@@ -54,9 +54,13 @@ def need(*programs: str) -> None:
 
 @pytest.fixture(scope="module")
 def good(tmp_path_factory) -> list[Path]:
-    """A directory of each format."""
+    """A directory of each format, and one of a model over parameters."""
     folder, source = tmp_path_factory.mktemp("good"), ROOT / "luts" / "fitted"
-    return [files.write_format_1(folder / "1", source), files.write_format_2(folder / "2", source)]
+    return [
+        files.write_format_1(folder / "1", source),
+        files.write_format_2(folder / "2", source),
+        files.write_over_parameters(folder / "parameters"),
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +68,8 @@ def directories(good, tmp_path_factory) -> list[Path]:
     """Every case of tests/conformance, the shipped models, and one in a deep folder."""
     folder = tmp_path_factory.mktemp("cases")
     found = [ROOT / "luts" / model for model in MODELS]
-    for given, edits in zip(good, (cases.of_format_1(), cases.of_format_2()), strict=True):
+    edits_of = cases.of_format_1(), cases.of_format_2(), cases.of_parameters()
+    for given, edits in zip(good, edits_of, strict=True):
         for number, (_, file, edit, _) in enumerate(edits):
             found.append(folder / f"{given.name}-{number}")
             shutil.copytree(given, found[-1])

@@ -7,13 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 _Floats = NDArray[np.float32]
-_Table = tuple[_Floats, float, float, float, float, bool, float]
+_Axes = Sequence[tuple[int, _Floats]]
+_Table = tuple[_Floats, float, float, float, float, bool, float, _Axes]
 
 class Model:
     @property
     def lobes(self) -> list[str]: ...
     def sample(
         self,
+        parameters: Sequence[_Floats],
         shares: _Floats | None,
         theta_r: _Floats,
         phi_r: _Floats,
@@ -25,6 +27,7 @@ class Model:
     ) -> None: ...
     def pdf(
         self,
+        parameters: Sequence[_Floats],
         shares: _Floats | None,
         theta_r: _Floats,
         phi_r: _Floats,
@@ -63,8 +66,10 @@ class Model:
     ) -> None: ...
 
 def create(
+    parameters: Sequence[tuple[str, float, float, float]],
     tables: Sequence[_Table],
     lobes: Sequence[tuple[str, int, int, bool]],
+    axes: _Axes,
     theta_r: _Floats,
     offset: _Floats,
     share: _Floats,

@@ -16,8 +16,11 @@ import numpy as np
 from .errors import HairlutError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
+    from .axes import Axis, Parameter
     from .model import BakedModel
     from .table import Table
 
@@ -50,9 +53,10 @@ class Model:
     interpreter lock is released while the C library works.
     """
 
-    def __init__(self, name: str, core: Any) -> None:
+    def __init__(self, name: str, core: Any, parameters: Sequence[Parameter] = ()) -> None:
         self.name = name
         self._core = core
+        self._parameters = tuple(parameters)
 
     def __repr__(self) -> str:
         return f"<hairlut.Model {self.name}: lobes {', '.join(self.lobes)}>"
@@ -67,13 +71,25 @@ class Model:
         """
         return tuple(self._core.lobes)
 
+    @property
+    def parameters(self) -> dict[str, tuple[float, float, float]]:
+        """The hair's parameters on which the model depends: (least, most, standard) value by name.
+
+        >>> import hairlut
+        >>> hairlut.builtin("fitted").parameters
+        {}
+        """
+        return {p.name: (p.least, p.most, p.standard) for p in self._parameters}
+
     def sample(
         self,
+        /,
         theta_r: ArrayLike,
         phi_r: ArrayLike,
         u: ArrayLike,
         offset: ArrayLike = 0.0,
         shares: ArrayLike | None = None,
+        **parameters: ArrayLike,
     ) -> Sample:
         """Draws incident directions for viewer directions.
 
@@ -81,6 +97,7 @@ class Model:
         u               (..., 3) numbers in [0, 1): for the lobe, theta_i and the azimuth
         offset          where the fibre is hit, in [-1, 1]; 0 where there is none
         shares          (..., K) one number a lobe, in any unit; None: the model's own
+        parameters      of the strand, by name: clamped to their ranges; a standard value where there is none
 
         >>> import hairlut
         >>> hair = hairlut.builtin("fitted")
@@ -90,38 +107,47 @@ class Model:
         >>> bool((abs(s.pdf_angle / hair.pdf(0.3, 1.0, s.theta_i, s.phi_i) - 1) < 1e-4).all())
         True
         """
-        numbers = _components(u)
+        numbers, strand = _components(u), self._strand(parameters)
         given = [_float32(x) for x in (theta_r, phi_r, offset)]
-        shape = np.broadcast_shapes(*(x.shape for x in (*given, numbers[0])), _shape_of(shares))
+        shape = np.broadcast_shapes(*(x.shape for x in (*given, numbers[0], *strand)), _shape_of(shares))
         columns = [_column(x, shape) for x in (*given, *numbers)]
+        strand = [_column(x, shape) for x in strand]
         out = _empty(shape, 4)
-        self._core.sample(self._shares(shares, shape), *columns, [x.reshape(-1) for x in out])
+        self._core.sample(strand, self._shares(shares, shape), *columns, [x.reshape(-1) for x in out])
         return Sample(*out)
 
     def pdf(
         self,
+        /,
         theta_r: ArrayLike,
         phi_r: ArrayLike,
         theta_i: ArrayLike,
         phi_i: ArrayLike,
         offset: ArrayLike = 0.0,
         shares: ArrayLike | None = None,
+        **parameters: ArrayLike,
     ) -> Floats:
         """Density per rad^2 with which `sample` draws (theta_i, phi_i); 0 for theta_i beyond the poles.
 
         >>> import hairlut
         >>> float(hairlut.builtin("fitted").pdf(0.0, 0.0, 2.0, 0.0))
         0.0
+        >>> hairlut.builtin("fitted").pdf(0.0, 0.0, 1.0, 0.0, beta_m=0.3)
+        Traceback (most recent call last):
+        hairlut.errors.HairlutError: parameter 'beta_m': model fitted has no parameters
         """
         given = [_float32(x) for x in (theta_r, phi_r, offset, theta_i, phi_i)]
-        shape = np.broadcast_shapes(*(x.shape for x in given), _shape_of(shares))
+        strand = self._strand(parameters)
+        shape = np.broadcast_shapes(*(x.shape for x in (*given, *strand)), _shape_of(shares))
         (out,) = _empty(shape, 1)
         columns = [_column(x, shape) for x in given]
-        self._core.pdf(self._shares(shares, shape), *columns, out.reshape(-1))
+        strand = [_column(x, shape) for x in strand]
+        self._core.pdf(strand, self._shares(shares, shape), *columns, out.reshape(-1))
         return out
 
     def sample_lobe(self, lobe: str, theta_r: ArrayLike, phi_r: ArrayLike, u: ArrayLike) -> Sample:
-        """Draws from one lobe by itself, not turned; u (..., 2): for theta_i and the azimuth.
+        """Draws from one lobe by itself, not turned, at the standard values of parameters; u (..., 2): for
+        theta_i and the azimuth.
 
         >>> import hairlut
         >>> s = hairlut.builtin("fitted").sample_lobe("multiple", 0.3, 1.0, (0.5, 0.25))  # uniform in azimuth
@@ -177,6 +203,14 @@ class Model:
             raise HairlutError(f"lobe {lobe!r}: model {self.name} has {', '.join(self.lobes)}")
         return self.lobes.index(lobe)
 
+    def _strand(self, given: dict[str, ArrayLike]) -> list[Floats]:
+        """A value for each parameter; nothing where none is given."""
+        for name in given:
+            if name not in self.parameters:
+                known = ", ".join(self.parameters) or "no parameters"
+                raise HairlutError(f"parameter {name!r}: model {self.name} has {known}")
+        return [_float32(given.get(p.name, p.standard)) for p in self._parameters] if given else []
+
     def _shares(self, shares: ArrayLike | None, shape: tuple[int, ...]) -> Floats | None:
         if shares is None:
             return None
@@ -219,7 +253,7 @@ def load(directory: str | PathLike[str]) -> Model:
     from . import exr  # late: reading images takes as long as all other imports
 
     baked = exr.read_model(Path(directory))
-    return Model(baked.name, _create(library, baked))
+    return Model(baked.name, _create(library, baked), baked.parameters)
 
 
 def _create(library: Any, baked: BakedModel) -> Any:
@@ -235,13 +269,21 @@ def _create(library: Any, baked: BakedModel) -> Any:
         )
         for lobe in baked.lobes
     ]
-    mixture = baked.mixture
-    grids = (np.ascontiguousarray(x, np.float32) for x in (mixture.share, mixture.turn))
+    mixture, number = baked.mixture, {p.name: k for k, p in enumerate(baked.parameters)}
+    shape = len(lobes), -1, len(mixture.offset)
+    grids = (np.ascontiguousarray(x, np.float32).reshape(shape) for x in (mixture.share, mixture.turn))
     nodes = (np.ascontiguousarray(x, np.float32) for x in (mixture.theta_r, mixture.offset))
+    ranges = [(p.name, p.least, p.most, p.standard) for p in baked.parameters]
+    tables = [(*_table(x), _axes(x.axes, number)) for x in tables]
+    axes = _axes(mixture.axes, number)
     try:
-        return library.create([_table(x) for x in tables], lobes, *nodes, *grids, mixture.mirrored)
+        return library.create(ranges, tables, lobes, axes, *nodes, *grids, mixture.mirrored)
     except ValueError as error:
         raise HairlutError(f"{baked.name}: {error}") from error
+
+
+def _axes(axes: Sequence[Axis], number: dict[str, int]) -> list[tuple[int, Floats]]:
+    return [(number[axis.name], np.ascontiguousarray(axis.nodes, np.float32)) for axis in axes]
 
 
 def _table(table: Table) -> tuple[Floats, float, float, float, float, bool, float]:

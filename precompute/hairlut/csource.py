@@ -15,6 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from . import __version__
+from .axes import Axis, Parameter
 from .errors import HairlutError
 from .lobes import DIFFERENCE, SUM, Array
 from .model import BakedLobe, BakedModel
@@ -48,20 +49,27 @@ def _definitions(model: BakedModel, texels: dict[bytes, str]) -> list[str]:
         name = texels.setdefault(pairs.tobytes(), f"{prefix}_{table.name}_texels")
         if name.startswith(f"{prefix}_{table.name}_"):
             parts.append(_array(name, pairs))
+        parts += _axes(f"{prefix}_{table.name}", table.axes, model.parameters)
         parts.append(_table(f"{prefix}_{table.name}", table, name))
     lobes = ",\n".join(_lobe(prefix, lobe) for lobe in model.lobes)
     parts.append(f"static const hairlut_lobe_desc {prefix}_lobes[{len(model.lobes)}] = {{\n{lobes}}};")
     mixture = model.mixture
     for name in ("theta_r", "offset", "share", "turn"):
         parts.append(_array(f"{prefix}_{name}", getattr(mixture, name)))
+    parts += _axes(f"{prefix}_mixture", mixture.axes, model.parameters)
     parts.append(
         f"static const hairlut_mixture_desc {prefix}_mixture = {{sizeof(hairlut_mixture_desc), "
         f"{len(mixture.theta_r)}, {len(mixture.offset)}, {prefix}_theta_r, {prefix}_offset, {prefix}_share, "
-        f"{prefix}_turn, {int(mixture.mirrored)}}};"
+        f"{prefix}_turn, {int(mixture.mirrored)}, {_counted(f'{prefix}_mixture_axes', mixture.axes)}}};"
     )
+    if model.parameters:
+        lines = ",\n".join(map(_parameter, model.parameters))
+        name = f"{prefix}_parameters[{len(model.parameters)}]"
+        parts.append(f"static const hairlut_parameter {name} = {{\n{lines}}};")
     parts.append(
         f"extern const hairlut_model_desc {prefix}_desc;\nconst hairlut_model_desc {prefix}_desc = {{"
-        f"sizeof(hairlut_model_desc), {len(model.lobes)}, {prefix}_lobes, &{prefix}_mixture}};"
+        f"sizeof(hairlut_model_desc), {len(model.lobes)}, {prefix}_lobes, &{prefix}_mixture, "
+        f"{_counted(f'{prefix}_parameters', model.parameters)}}};"
     )
     return parts
 
@@ -86,8 +94,30 @@ def _table(name: str, table: Table, texels: str) -> str:
     numbers = ", ".join(map(_literal, [*table.theta_r_range, *table.domain]))
     return (
         f"static const hairlut_table {name} = {{sizeof(hairlut_table), {texels}, {table.width}, "
-        f"{table.height}, {numbers}, {WARPS[table.warp.name]}, {_literal(table.warp.e)}}};"
+        f"{table.height}, {numbers}, {WARPS[table.warp.name]}, {_literal(table.warp.e)}, "
+        f"{_counted(f'{name}_axes', table.axes)}}};"
     )
+
+
+def _counted(name: str, items: Sequence) -> str:
+    """The number of an array's items, and the array."""
+    return f"{len(items)}, {name if items else 'NULL'}"
+
+
+def _axes(name: str, axes: Sequence[Axis], parameters: Sequence[Parameter]) -> list[str]:
+    """Definitions of the nodes of each axis, and of the array <name>_axes."""
+    if not axes:
+        return []
+    numbers = {parameter.name: k for k, parameter in enumerate(parameters)}
+    fields = [f"{numbers[axis.name]}, {len(axis.nodes)}, {name}_{axis.name}" for axis in axes]
+    lines = ",\n".join(f"    {{sizeof(hairlut_parameter_nodes), {each}}}" for each in fields)
+    array = f"static const hairlut_parameter_nodes {name}_axes[{len(axes)}] = {{\n{lines}}};"
+    return [*(_array(f"{name}_{axis.name}", axis.nodes) for axis in axes), array]
+
+
+def _parameter(parameter: Parameter) -> str:
+    numbers = ", ".join(map(_literal, [parameter.least, parameter.most, parameter.standard]))
+    return f'    {{sizeof(hairlut_parameter), "{parameter.name}", {numbers}}}'
 
 
 def _lobe(prefix: str, lobe: BakedLobe) -> str:

@@ -121,7 +121,7 @@ def _named_apart(models: list[BakedModel]) -> list[BakedModel]:
 
 
 SINGLE_TABLES = ("raw", "npz")
-CARRY_PARAMETERS = ("exr",)
+CARRY_PARAMETERS = ("c", "exr")
 TARGETS: dict[str, Callable[[Sequence[Source], Path], Path]] = {
     "c": export_c,
     "exr": export_exr,

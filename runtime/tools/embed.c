@@ -162,7 +162,11 @@ int main(int argc, char **argv)
             return 1;
         }
         if (hairlut_parameter_count(models[k]) > 0) {
-            fprintf(stderr, "embed: %s: depends on parameters: expected a model without\n", argv[k]);
+            fprintf(
+                stderr,
+                "embed: %s: depends on the parameter %s: expected a model without parameters, as compiled-in models have "
+                "none; write one with hairlut export %s --at NAME=VALUE --to exr --out FOLDER\n",
+                argv[k], hairlut_parameter_name(models[k], 0), argv[k]);
             return 1;
         }
     }

@@ -97,7 +97,7 @@ def test_texels_are_pairs_of_angle_and_slope(source, shipped):
     head = (
         rf"static const hairlut_table hairlut_{path.parent.name}_{table.name} = \{{sizeof\(hairlut_table\), "
     )
-    rest = rf"(\w+), {table.width}, {table.height}, (.*?), HAIRLUT_WARP_OCTAVES, (.*?)\}};"
+    rest = rf"(\w+), {table.width}, {table.height}, (.*?), HAIRLUT_WARP_OCTAVES, (.*?), 0, NULL\}};"
     name = re.search(head + rest, text)
     pairs = np.stack([table.texels, table.slopes], axis=-1)
     np.testing.assert_array_equal(array(text, name[1]), pairs.ravel())
@@ -113,7 +113,7 @@ def test_the_mixture_stands_in_it(source, luts):
         np.testing.assert_array_equal(array(text, f"hairlut_brown_{name}"), np.float32(values).ravel())
     assert re.search(
         rf"hairlut_brown_mixture = \{{sizeof\(hairlut_mixture_desc\), {len(mixture.theta_r)}, "
-        rf"{len(mixture.offset)}, .*, {int(mixture.mirrored)}\}};",
+        rf"{len(mixture.offset)}, .*, {int(mixture.mirrored)}, 0, NULL\}};",
         text,
     )
 

@@ -74,7 +74,7 @@ def verify(path: Path, model: Model | None = None) -> list[Report]:
     reports = [verify_file(file, models) for file in files]
     if path.is_dir():
         for directory in sorted({file.parent for file in files}):
-            reports += _incomplete(directory, reports)
+            reports += _whole(directory, reports)
     return reports
 
 
@@ -84,8 +84,9 @@ def lobe_of(path: Path, model: Model | None = None) -> Lobe:
     return _lobe(path, exr.read(path)[0], MODELS | ({model.name: model} if model else {}))
 
 
-def _incomplete(directory: Path, reports: list[Report]) -> list[Report]:
-    """What is wrong with the directory as a whole, if each of its files is good by itself."""
+def _whole(directory: Path, reports: list[Report]) -> list[Report]:
+    """The report on the directory as a whole, if each of its files is good by itself; none where there is
+    nothing to say."""
     if not all(report.ok for report in reports if report.path.parent == directory):
         return []
     try:
@@ -93,8 +94,11 @@ def _incomplete(directory: Path, reports: list[Report]) -> list[Report]:
     except HairlutError as error:
         path, _, problem = str(error).partition(": ")
         return [Report(Path(path), [problem])]
-    problems = _at_random_parameters(model) if model.parameters else []
-    return [Report(directory, problems)] if problems else []
+    if not model.parameters:
+        return []
+    note = f"{len(model.tables)} tables: densities integrate to 1 at {PLACES} random parameters and viewers"
+    problems = _at_random_parameters(model)
+    return [Report(directory, problems, note="" if problems else note)]
 
 
 def _at_random_parameters(model: BakedModel) -> list[str]:

@@ -155,9 +155,9 @@ static hairlut_result refuse_others(const hairlut_exr_file *file, const char *pr
             continue;
         const int index = index_of(parameters, name);
         if (index < 0 || (axes && !has_axis(axes, index))) {
-            char what[60];
-            snprintf(what, sizeof what, "the name behind %s", prefix);
-            return hairlut_exr_fail_text(file, what, name, "one of those in hairlut.axes");
+            char what[80];
+            snprintf(what, sizeof what, "hairlut.axes lacks NAME of an attribute %sNAME, which", prefix);
+            return hairlut_exr_fail_text(file, what, name, "all such names");
         }
     }
     return HAIRLUT_OK;

@@ -19,7 +19,7 @@ from .shapes import BOTH, PHI, THETA, Shapes
 
 STEPS = 9  # values of a parameter along which lobes are followed
 JOINED = 4  # values of one whose lobes keep their shapes that are fitted together
-SLACK = 0.0025  # of V by which shapes that are fixed may lose
+SLACK = 0.004  # of V by which shapes that are fixed may lose
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,8 @@ from .shapes import BOTH, THETA, Shapes
 from .turning import TWO_PI
 
 WIDTH, WARP = 64, Warp("octaves", 2.0**-11)  # of the tables by which nodes are chosen
+BYTES, USUAL_WIDTH = 700_000, 24  # of all tables, about
+MOST_DOUBLINGS = 6  # of what nodes may cost, for tables of this size
 ENOUGH_JOINED = 3  # places by which the shapes of all rows are fitted
 
 
@@ -51,10 +53,28 @@ def exact_phi(found: Shapes, lobe: int, theta_r: Array) -> smooth.SmoothRows:
 
 
 def chosen(
-    box: Box, found: Dependence, allowed: Mapping[str, float], report: Callable[[float], None]
+    box: Box, found: Dependence, rows: int, allowed: Mapping[str, float], report: Callable[[float], None]
 ) -> dict[int, tuple[Array, list[Shapes]]]:
     """The nodes of each parameter on which shapes depend, with the shapes there. allowed: V that blending
-    between the nodes of a parameter may cost."""
+    between the nodes of a parameter may cost; more of it where the tables would be too large otherwise."""
+    result: dict[int, tuple[Array, list[Shapes]]] = {}
+    for doublings in range(MOST_DOUBLINGS):
+        result = _chosen(box, found, {name: v * 2**doublings for name, v in allowed.items()}, report)
+        if _bytes(found, result, rows) <= BYTES:
+            break
+    return result
+
+
+def _bytes(found: Dependence, along: dict[int, tuple[Array, list[Shapes]]], rows: int) -> int:
+    """Of tables of usual width."""
+    theta, phi = (int(np.prod([len(along[p][0]) for p in axes])) for axes in (found.theta, found.phi))
+    lobes = found.base.rows[0].phi.shape[0]
+    return 8 * USUAL_WIDTH * lobes * (theta * rows + phi * (2 if found.base.tied else rows))
+
+
+def _chosen(
+    box: Box, found: Dependence, allowed: Mapping[str, float], report: Callable[[float], None]
+) -> dict[int, tuple[Array, list[Shapes]]]:
     result = {}
     for number, (p, (values, along)) in enumerate(found.along.items()):
         report(number / len(found.along))
@@ -130,13 +150,22 @@ def at_nodes(
         rows = [replace(row, phi=found.base.rows[0].phi) for row in full.rows]
         start = replace(full, rows=rows, blocks=[replace(b, phi=0) for b in full.blocks], tied=True)
     start = shapes.joined(box, start, _some(found.places), THETA if tied else BOTH)
-    theta = _grid(box, start, found, found.theta, along, lambda share: report(share * 0.8))
-    if not set(found.phi) <= set(found.theta):
-        first = found.base if tied else start
-        phi = _grid(box, first, found, found.phi, along, lambda share: report(0.8 + share * 0.2))
-    else:
-        phi = _part(theta, found.phi, found.places[0])
+    theta = _grid(box, start, found, found.theta, along, {}, lambda share: report(share * 0.8))
+    common = _part(theta, found.phi, found.places[0])
+    if set(found.phi) <= set(found.theta):
+        return start, theta, common
+    if tied:
+        few = shapes.some(len(start.theta_r))
+        common = replace(common, at={index: shapes.of_rows(one, few) for index, one in common.at.items()})
+    known = {
+        tuple(zip(common.axes, _values(common, index), strict=True)): one for index, one in common.at.items()
+    }
+    phi = _grid(box, start, found, found.phi, along, known, lambda share: report(0.8 + share * 0.2))
     return start, theta, phi
+
+
+def _values(grid: NodeShapes, index: tuple[int, ...]) -> tuple[float, ...]:
+    return tuple(float(v[i]) for v, i in zip(grid.nodes, index, strict=True))
 
 
 def _some(places: tuple[Place, ...]) -> tuple[Place, ...]:
@@ -150,18 +179,26 @@ def _grid(
     found: Dependence,
     axes: tuple[int, ...],
     along: dict[int, tuple[Array, list[Shapes]]],
+    known: dict[tuple[tuple[int, float], ...], Shapes],
     report: Callable[[float], None],
 ) -> NodeShapes:
-    """The shapes at the product of the axes' nodes, each followed from the one before it."""
+    """The shapes at the product of the axes' nodes, each followed from the one before it: first along axes of
+    inclinations and azimuths, then along those of one kind, where the other keeps what it has. known: shapes
+    by the values of axes of both kinds."""
     values = [along[p][0] for p in axes]
+    both = [a for a, p in enumerate(axes) if p in found.theta and p in found.phi]
     done: dict[tuple[int, ...], Shapes] = {}
     order = sorted(product(*(range(len(v)) for v in values)), key=sum)  # the anchor is the first of each
     for number, index in enumerate(order):
         report(number / len(order))
+        of_one_kind = [a for a, i in enumerate(index) if i and a not in both]
+        if known and not of_one_kind:
+            done[index] = known[tuple((axes[a], float(values[a][index[a]])) for a in both)]
+            continue
         if not any(index):
             done[index] = start
             continue
-        axis = max(a for a, i in enumerate(index) if i)
+        axis = max(of_one_kind or [a for a, i in enumerate(index) if i])
         before = done[(*index[:axis], index[axis] - 1, *index[axis + 1 :])]
         places = tuple(with_value(place, axes[axis], values[axis][index[axis]]) for place in before.places)
         moving = axes[axis] in found.theta, axes[axis] in found.phi

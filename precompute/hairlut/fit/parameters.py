@@ -22,7 +22,7 @@ from . import boxpromise, dependence, nodemixture, nodeshapes, nodetables, shape
 from .box import Box, Place
 from .boxpromise import Measured
 from .dependence import Dependence
-from .refine import GAIN, HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART
+from .refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART
 from .shapes import Shapes
 
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
@@ -145,7 +145,7 @@ def _anchor(box: Box, place: Place, count: int, rows: int, report: Report) -> Sh
 def _dependence(box: Box, anchor: Shapes, report: Report) -> Dependence:
     some = shapes.of_rows(anchor, shapes.some(len(anchor.theta_r)))
     tied = shapes.with_common_azimuths(some)
-    if tied.variance() > some.variance() + GAIN:
+    if tied.variance() > some.variance() + dependence.SLACK:
         tied = some
     found = dependence.dependence(box, tied, lambda share: report("finding what depends on what", share))
     for axes, what in ((found.theta, "inclinations"), (found.phi, "azimuths")):
@@ -173,7 +173,9 @@ def _fit_once(
     random: np.random.Generator,
     report: Report,
 ) -> FittedBox:
-    along = nodeshapes.chosen(box, found, allowed, lambda share: report("choosing nodes", share))
+    along = nodeshapes.chosen(
+        box, found, len(anchor.theta_r), allowed, lambda share: report("choosing nodes", share)
+    )
     start, theta, phi = nodeshapes.at_nodes(
         box, anchor, found, along, lambda share: report("fitting lobes", share)
     )

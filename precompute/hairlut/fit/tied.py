@@ -21,7 +21,7 @@ from .factor import POWER, excess, filled
 from .lobesfit import FAINT, LEAST_SHARE, Row, evened, stepped
 from .turning import turned
 
-FRESH = 0.02  # part of an expected shape that is replaced by the light, or by an even azimuth
+FRESH = 0.005  # part of an expected shape that is replaced by the light, or by an even azimuth
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ table <model>/<table>.exr becomes <model>/<table>.f32, its texels (angle, dx/du)
 import io
 import json
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -16,19 +17,19 @@ import numpy as np
 from . import exr
 from .files import write_whole
 from .model import BakedModel
-from .stream import AXIS, HEAD, WIDTH, stream
+from .stream import WIDTH, head_size, stream
 from .table import Table
 
 Errors = Mapping[str, float]
 
 
 def sidecar(table: Table, errors: Errors) -> dict:
-    """What the file's header says, and the size."""
+    """What the file's header says, and the size: rows of all nodes of the parameters."""
     return {
         "file": f"{table.name}.f32",
         "type": "float32, little-endian, (angle, dx/du) row by row",
         "width": table.width,
-        "height": table.height,
+        "height": len(table.texels),
         "header": exr.attributes(table),
         "errors": dict(errors),
     }
@@ -46,13 +47,19 @@ def model_sidecar(model: BakedModel, texels: int) -> dict:
         "model": model.name,
         "texels": texels,
         "texture": [WIDTH, texels // WIDTH],
-        "head": HEAD + 2 * AXIS * len(lobes),
+        "head": head_size(model),
         "lobes": lobes,
         "theta_r": np.asarray(model.mixture.theta_r, float).tolist(),
         "offset": np.asarray(model.mixture.offset, float).tolist(),
         "mirrored": bool(model.mixture.mirrored),
+        **_parameters(model),
         "errors": {name: dict(errors) for name, errors in model.errors.items()},
     }
+
+
+def _parameters(model: BakedModel) -> dict:
+    """Name, range and standard value of each, in the order in which a shader takes them."""
+    return {"parameters": [asdict(each) for each in model.parameters]} if model.parameters else {}
 
 
 def write_raw(table: Table, errors: Errors, folder: Path) -> list[Path]:
@@ -76,8 +83,8 @@ def _write(base: Path, floats: np.ndarray, description: dict) -> list[Path]:
 
 
 def write_npz(table: Table, errors: Errors, folder: Path) -> list[Path]:
-    """Writes folder/<model>/<table>.npz: texels, slopes, theta_r of the rows, u of the columns, and the
-    sidecar."""
+    """Writes folder/<model>/<table>.npz: texels, slopes, theta_r of a node's rows, u of the columns,
+    nodes_<name> of each parameter, and the sidecar."""
     data = io.BytesIO()
     np.savez(
         data,
@@ -85,6 +92,7 @@ def write_npz(table: Table, errors: Errors, folder: Path) -> list[Path]:
         slopes=np.ascontiguousarray(table.slopes, np.float32),
         theta_r=table.theta_r,
         u=table.warp.u(table.width),
+        **{f"nodes_{axis.name}": axis.nodes for axis in table.axes},
         sidecar=np.array(json.dumps(sidecar(table, errors))),
     )
     return [write_whole(folder / table.model / f"{table.name}.npz", data.getvalue())]

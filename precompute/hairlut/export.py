@@ -3,8 +3,7 @@
 
 Target "c" is a C source against the public header (csource.py); "raw" and "npz" are plain arrays (arrays.py),
 of which "raw" also writes a model as the stream that the shaders read. "exr" writes a model's files again: of
-use where it depends on parameters of the hair and is wanted at fixed ones. Targets that do not carry
-parameters write a model at fixed ones only.
+use where it depends on parameters of the hair and is wanted at fixed ones.
 There is no KTX2 or DDS: the one maintained writer of float KTX2 for Python, pyktx, needs the native libktx,
 which neither pip nor Debian installs; for DDS of floats there is none. A raw file is what those containers
 have behind their header.
@@ -46,9 +45,6 @@ def export(paths: Sequence[Path], target: str, out: Path, at: Mapping[str, float
     if target not in TARGETS:
         raise HairlutError(f"--to {target}: expected one of {', '.join(TARGETS)}")
     sources = [_source(Path(path), at, target in SINGLE_TABLES) for path in paths]
-    if target not in CARRY_PARAMETERS:
-        for source in sources:
-            _refuse_parameters(source, target)
     return TARGETS[target](sources, Path(out))
 
 
@@ -61,19 +57,6 @@ def _source(path: Path, at: Mapping[str, float], may_be_a_table: bool) -> Source
         return Source(path, [exr.read(path)], None)
     model = fixed(path, exr.read_model(path), at) if at else exr.read_model(path)
     return Source(path, [(table, model.errors.get(table.name, {})) for table in model.tables], model)
-
-
-def _refuse_parameters(source: Source, target: str) -> None:
-    if source.model and source.model.parameters:
-        first = source.model.parameters[0]
-        found = ", ".join(parameter.name for parameter in source.model.parameters)
-        remedy = f"fix them, as with --at {first.name}={first.standard:g}"
-    elif source.tables[0][0].axes:
-        found = ", ".join(axis.name for axis in source.tables[0][0].axes)
-        remedy = "name its directory, and fix them with --at NAME=VALUE"
-    else:
-        return
-    raise HairlutError(f"{source.path}: depends on {found}, which --to {target} does not carry: {remedy}")
 
 
 def export_c(sources: Sequence[Source], out: Path) -> Path:
@@ -121,7 +104,6 @@ def _named_apart(models: list[BakedModel]) -> list[BakedModel]:
 
 
 SINGLE_TABLES = ("raw", "npz")
-CARRY_PARAMETERS = ("c", "exr")
 TARGETS: dict[str, Callable[[Sequence[Source], Path], Path]] = {
     "c": export_c,
     "exr": export_exr,

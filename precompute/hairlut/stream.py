@@ -2,22 +2,26 @@
 """A model as one stream of texels of four floats, as the shaders read it (runtime/shaders/README.md).
 
 Everything a shader would derive from a table is in it: cells of two knots and slopes, what depends on the
-column alone, a search tree for each row, and the mixture. Positions inside a stream are relative to its first
-texel, so that several models can follow each other in one texture or buffer.
+column alone, a search tree for each row, the mixture, and all of these for each node of the parameters on
+which they depend. Positions inside a stream are relative to its first texel, so that several models can
+follow each other in one texture or buffer.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .axes import node_count
 from .errors import HairlutError
 from .lobes import Array
-from .mixture import wrap
+from .mixture import Mixture, wrap
 from .warp import Warp
 
 if TYPE_CHECKING:
+    from .axes import Axis
     from .model import BakedModel
     from .table import Table
 
@@ -31,9 +35,11 @@ LARGEST = 1e38  # a key that is above every angle
 
 def stream(model: BakedModel) -> Array:
     """(n, 4) float32, n a multiple of WIDTH."""
-    axes = [table for lobe in model.lobes for table in (lobe.theta, lobe.phi)]
-    head = np.zeros((HEAD + AXIS * len(axes), 4))
+    tables = [table for lobe in model.lobes for table in (lobe.theta, lobe.phi)]
+    owners = [owner.axes if owner else () for owner in (model.mixture, *tables)]
+    head = np.zeros((head_size(model), 4))
     parts, length = [head], len(head)
+    placed: dict[bytes, int] = {}
 
     def append(texels: Array) -> int:
         nonlocal length
@@ -41,23 +47,34 @@ def stream(model: BakedModel) -> Array:
         length += len(parts[-1])
         return length - len(parts[-1])
 
+    def append_once(texels: Array) -> int:
+        content = texels.tobytes()
+        if content not in placed:
+            placed[content] = append(texels)
+        return placed[content]
+
     mixture = model.mixture
     theta_r, offset = (
         np.float32(nodes).astype(float) for nodes in (mixture.theta_r, mixture.offset)
     )  # as in C
-    head[1, :3] = append(_nodes(theta_r)), len(theta_r), _tree_size(len(theta_r) - 2)
-    arc = np.arcsin(offset)
-    head[2, :3] = append(_nodes(arc)), len(arc), _tree_size(len(arc) - 2)
-    head[0] = len(model.lobes), mixture.mirrored, append(_values(mixture.share, mixture.turn)), 0
-    placed: dict[bytes, int] = {}
-    for k, table in enumerate(axes):
+    head[1] = _place_nodes(append, theta_r)
+    head[2] = _place_nodes(append, np.arcsin(offset))
+    nodes = [node_count(axes) for axes in owners]
+    values = mixture_texels(mixture)
+    sizes = [values.size // 4 // nodes[0]]  # texels of one node of each owner
+    head[0] = len(model.lobes), mixture.mirrored, append(values), 0
+    for k, (table, count) in enumerate(zip(tables, nodes[1:], strict=True)):
         if table is None:
+            sizes.append(0)
             continue  # zeros: a uniform azimuth
         texels = table_texels(table)
-        content = texels.tobytes()
-        if content not in placed:
-            placed[content] = append(texels)
-        head[HEAD + AXIS * k : HEAD + AXIS * (k + 1)] = _axis(table, placed[content])
+        sizes.append((len(texels) - table.width // 2) // count)
+        head[HEAD + AXIS * k : HEAD + AXIS * (k + 1)] = _axis(table, append_once(texels))
+    if model.parameters:
+        head[0, 0] *= -1  # so that a shader that knows no parameters draws nothing from it
+        head[2, 3] = len(model.parameters)
+        first = HEAD + AXIS * len(tables)
+        head[first:] = _parameters(model, first, owners, sizes, append_once)
     if length > MOST:
         raise HairlutError(
             f"model {model.name}: {length} texels, expected at most {MOST}: use smaller tables"
@@ -67,12 +84,63 @@ def stream(model: BakedModel) -> Array:
     return np.concatenate(parts).astype(np.float32)
 
 
+def head_size(model: BakedModel) -> int:
+    """Texels of a model's head."""
+    tables = [table for lobe in model.lobes for table in (lobe.theta, lobe.phi)]
+    size = HEAD + AXIS * len(tables)
+    if model.parameters:
+        owners = [owner.axes if owner else () for owner in (model.mixture, *tables)]
+        size += len(model.parameters) + len(owners) + sum(map(len, owners))
+    return size
+
+
 def table_texels(table: Table) -> Array:
-    """(n, 4) of one table: a texel for each folded column, the cells, the search trees."""
+    """(n, 4) of one table: a texel for each folded column, then for each node of its parameters the cells and
+    the search trees."""
     u, h = _columns(table)
-    knots = np.stack([u, 1 / h, h, np.zeros_like(u)], axis=1)
-    rows = np.asarray(table.texels, float)
-    return np.concatenate([knots, _cells(table, h).reshape(-1, 4), _trees(rows[:-1, 1:-1], rows[1:, 1:-1])])
+    parts = [np.stack([u, 1 / h, h, np.zeros_like(u)], axis=1)]
+    shape = -1, table.height, table.width
+    for x, d in zip(table.texels.reshape(shape), table.slopes.reshape(shape), strict=True):
+        angles, slopes = np.asarray(x, float), np.asarray(d, float)
+        parts.append(_cells(angles, slopes, h).reshape(-1, 4))
+        parts.append(_trees(angles[:-1, 1:-1], angles[1:, 1:-1]))
+    return np.concatenate(parts)
+
+
+def mixture_texels(mixture: Mixture) -> Array:
+    """(nodes of the parameters, gaps of theta_r, gaps of the offset, K, 2, 4) shares and turns."""
+    grid = len(mixture.theta_r), len(mixture.offset)
+    nodes = (
+        np.moveaxis(values.reshape(len(mixture.lobes), -1, *grid), 1, 0)
+        for values in (mixture.share, mixture.turn)
+    )
+    return np.stack([_values(share, turn) for share, turn in zip(*nodes, strict=True)])
+
+
+def _parameters(
+    model: BakedModel,
+    first: int,
+    owners: Sequence[tuple[Axis, ...]],
+    sizes: Sequence[int],
+    append: Callable[[Array], int],
+) -> Array:
+    """The part of the head from texel `first` on: (least, most, standard) of each parameter; for the mixture
+    and each table (number of axes, place of the first, texels of a node); and for each of their axes what
+    _place_nodes gives, with the number of the parameter."""
+    names = [parameter.name for parameter in model.parameters]
+    ranges = [(each.least, each.most, each.standard, 0) for each in model.parameters]
+    owned, listed = [], []
+    for axes, size in zip(owners, sizes, strict=True):
+        owned.append((len(axes), first + len(names) + len(owners) + len(listed), size, 0))
+        for axis in axes:
+            nodes = _place_nodes(append, np.float32(axis.nodes).astype(float))
+            listed.append((*nodes[:3], names.index(axis.name)))
+    return np.array([*ranges, *owned, *listed], float)
+
+
+def _place_nodes(append: Callable[[Array], int], nodes: Array) -> tuple[float, ...]:
+    """(place of the appended nodes, their number, texels of their tree, 0)"""
+    return append(_nodes(nodes)), len(nodes), _tree_size(len(nodes) - 2), 0
 
 
 def _columns(table: Table) -> tuple[Array, Array]:
@@ -82,10 +150,10 @@ def _columns(table: Table) -> tuple[Array, Array]:
     return m[:half], table.warp.widths(table.width)[:half]
 
 
-def _cells(table: Table, h: Array) -> Array:
-    """(2 half, height, 4) nearer knot x0, width w, h dx/du at both ends; from the low end on, then from the
-    high end on, where w and dx/du are negative. An odd number of cells has its middle one in both halves."""
-    x, d = (np.asarray(part, float) for part in (table.texels, table.slopes))
+def _cells(x: Array, d: Array, h: Array) -> Array:
+    """(2 half, height, 4) of angles and slopes (height, width): nearer knot x0, width w, h dx/du at both
+    ends; from the low end on, then from the high end on, where w and dx/du are negative. An odd number of
+    cells has its middle one in both halves."""
     halves = []
     for sign, angles, slopes in ((1.0, x, d), (-1.0, x[:, ::-1], d[:, ::-1])):
         near, far = angles[:, : len(h)], angles[:, 1 : len(h) + 1]

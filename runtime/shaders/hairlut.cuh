@@ -24,6 +24,9 @@
 #ifndef HAIRLUT_LOBE_LIMIT
 #define HAIRLUT_LOBE_LIMIT 16
 #endif
+#ifndef HAIRLUT_PARAMETER_LIMIT
+#define HAIRLUT_PARAMETER_LIMIT 8
+#endif
 #ifndef HAIRLUT_FETCH /* with HAIRLUT_SOURCE: what hairlut_model_at takes, and how texel i is read of it */
 #define HAIRLUT_SOURCE const hairlut_float4 *
 #define HAIRLUT_FETCH(source, i) ((source)[i])
@@ -45,6 +48,7 @@ struct hairlut_float4 {
 #endif
 
 constexpr int hairlut_max_lobes = HAIRLUT_LOBE_LIMIT;
+constexpr int hairlut_max_parameters = HAIRLUT_PARAMETER_LIMIT;
 
 HAIRLUT_FN float abs(float x)
 {
@@ -109,22 +113,32 @@ HAIRLUT_CONST int hairlut_uniform = 0; // azimuths: see hairlut_axis
 HAIRLUT_CONST int hairlut_difference = 1;
 HAIRLUT_CONST int hairlut_sum = 2;
 
-/* One hair in the stream of texels that `hairlut export --to raw` writes. */
-struct hairlut_model {
-    HAIRLUT_SOURCE source; // passed to HAIRLUT_FETCH and HAIRLUT_HEADER
-    int first;             // the texel at which the model begins
-    int lobes;
-    int values;            // the first texel of the mixture's shares and turns
-    bool mirrored;         // nodes of the offset are >= 0, and -h mirrors h
+/* What differs from strand to strand, such as a roughness: a value for each of the model's named parameters, in the order of
+ * hair.json. Values are clamped to the parameter's range; with NaN the density is 0. */
+struct hairlut_parameters {
+    float value[hairlut_max_parameters];
 };
 
-/* The lobes' shares and turns at one theta_r and offset. Shares are in any unit: replace them by your own where a shader knows
+/* One hair in the stream of texels that `hairlut export --to raw` writes. */
+struct hairlut_model {
+    HAIRLUT_SOURCE source;         // passed to HAIRLUT_FETCH and HAIRLUT_HEADER
+    int first;                     // the texel at which the model begins
+    int lobes;
+    int values;                    // the first texel of the mixture's shares and turns
+    int stride;                    // texels of shares and turns for a gap between nodes: two for each of the stream's lobes
+    bool mirrored;                 // nodes of the offset are >= 0, and -h mirrors h
+    int ranges;                    // the first parameter's texel
+    int parameter_count;           // 0 to 8
+    hairlut_parameters parameters; // every function reads the model at these: the standard values, or your own
+};
+
+/* The lobes' shares and turns at one theta_r, offset and set of parameters. Shares are in any unit: replace them by your own where a shader knows
  * better. A negative one counts as 0; with one that is infinite or NaN the density is 0. */
 struct hairlut_mixture {
     float share[hairlut_max_lobes];
     float turn[hairlut_max_lobes]; // rad
     float side;                    // -1: azimuths are mirrored
-    bool known;                    // neither theta_r nor the offset was NaN
+    bool known;                    // none of the three was NaN
 };
 
 struct hairlut_sample {
@@ -138,6 +152,20 @@ struct hairlut_sample {
 struct hairlut_numbers {
     float u_theta;
     float u_phi;
+};
+
+/* Where a strand lies among the nodes of the parameters that a table, or the mixture, depends on. Its texels are those of the 2^d
+ * nodes around it, each weighted by the product of t, where it is the upper node of an axis, or of 1 - t. */
+struct hairlut_corners {
+    int count;           // 2^d; 1 without parameters
+    int first;           // texels from those of the first node to those of the lowest corner
+    hairlut_float4 t;    // in [0,1], along each axis; 0 where there is none
+    hairlut_float4 step; // texels from a node to the next one, likewise
+};
+
+struct hairlut_corner {
+    int at; // texels from those of the first node
+    float weight;
 };
 
 /* One table and the numbers to read it by. */
@@ -155,6 +183,7 @@ struct hairlut_axis {
     float scale;      // column = F(m + e) * scale - origin
     float origin;
     int azimuth;      // what a lobe's second table holds: nothing (the azimuth is uniform), phi_i - phi_r or phi_i + phi_r
+    hairlut_corners corners;
 };
 
 struct hairlut_lobe {
@@ -235,28 +264,185 @@ HAIRLUT_FN float hairlut_blend(float a, float b, float t)
 
 /* ---- the stream ----------------------------------------------------------------------------------------------- */
 
-/* The model whose first texel is `first`. */
+/* The model whose first texel is `first`, with the standard values of its parameters. */
 HAIRLUT_FN hairlut_model hairlut_model_at(HAIRLUT_SOURCE source, int first)
 {
     hairlut_float4 head = HAIRLUT_HEADER(source, first);
     hairlut_model model;
     model.source = source;
     model.first = first;
-    model.lobes = min(int(head.x), hairlut_max_lobes);
+    model.stride = 2 * int(abs(head.x));
+    model.lobes = min(model.stride / 2, hairlut_max_lobes);
     model.mirrored = head.y > 0.5f;
     model.values = first + int(head.z);
+    model.ranges = first + 3 + 3 * model.stride;
+    model.parameter_count = 0;
+    if (head.x < 0.0f) {
+        hairlut_float4 offsets = HAIRLUT_HEADER(source, first + 2);
+        model.parameter_count = int(offsets.w);
+    }
+    for (int p = 0; p < hairlut_max_parameters; ++p) {
+        model.parameters.value[p] = 0.0f;
+        if (p < model.parameter_count) {
+            hairlut_float4 range = HAIRLUT_HEADER(source, model.ranges + p);
+            model.parameters.value[p] = range.z;
+        }
+    }
     return model;
 }
 
-/* A table whose three texels of numbers begin at `at`. */
-HAIRLUT_FN hairlut_axis hairlut_axis_at(HAIRLUT_SOURCE source, int model, int at)
+HAIRLUT_FN hairlut_float4 hairlut_zeros()
 {
-    hairlut_float4 shape = HAIRLUT_HEADER(source, at);
-    hairlut_float4 range = HAIRLUT_HEADER(source, at + 1);
-    hairlut_float4 warp = HAIRLUT_HEADER(source, at + 2);
+    hairlut_float4 zeros;
+    zeros.x = 0.0f;
+    zeros.y = 0.0f;
+    zeros.z = 0.0f;
+    zeros.w = 0.0f;
+    return zeros;
+}
+
+/* v, with x in place of component a. */
+HAIRLUT_FN hairlut_float4 hairlut_replaced(hairlut_float4 v, int a, float x)
+{
+    hairlut_float4 changed;
+    changed.x = a == 0 ? x : v.x;
+    changed.y = a == 1 ? x : v.y;
+    changed.z = a == 2 ? x : v.z;
+    changed.w = a == 3 ? x : v.w;
+    return changed;
+}
+
+/* sum + weight v */
+HAIRLUT_FN hairlut_float4 hairlut_added(hairlut_float4 sum, float weight, hairlut_float4 v)
+{
+    hairlut_float4 total;
+    total.x = sum.x + weight * v.x;
+    total.y = sum.y + weight * v.y;
+    total.z = sum.z + weight * v.z;
+    total.w = sum.w + weight * v.w;
+    return total;
+}
+
+HAIRLUT_FN hairlut_corners hairlut_one_corner()
+{
+    hairlut_corners corners;
+    corners.count = 1;
+    corners.first = 0;
+    corners.t = hairlut_zeros();
+    corners.step = hairlut_zeros();
+    return corners;
+}
+
+/* Corner c of a set: bit a of c is 1 where it is the upper node of axis a. */
+HAIRLUT_FN hairlut_corner hairlut_corner_of(hairlut_corners corners, int c)
+{
+    float x = (c & 1) != 0 ? corners.t.x : 1.0f - corners.t.x;
+    float y = (c & 2) != 0 ? corners.t.y : 1.0f - corners.t.y;
+    float z = (c & 4) != 0 ? corners.t.z : 1.0f - corners.t.z;
+    float w = (c & 8) != 0 ? corners.t.w : 1.0f - corners.t.w;
+    float steps = (c & 1) != 0 ? corners.step.x : 0.0f;
+    steps += (c & 2) != 0 ? corners.step.y : 0.0f;
+    steps += (c & 4) != 0 ? corners.step.z : 0.0f;
+    steps += (c & 8) != 0 ? corners.step.w : 0.0f;
+    hairlut_corner corner;
+    corner.at = corners.first + int(steps);
+    corner.weight = x * y * z * w;
+    return corner;
+}
+
+/* How many keys of a tree, blended over the corners, are at most x. A texel has two keys of a row and the same two of the row
+ * above, and three texels below it; all leaves are at one depth. */
+HAIRLUT_FN int hairlut_search(HAIRLUT_SOURCE source, hairlut_corners corners, int first, int tree, float t, float x)
+{
+    int node = 0;
+    while (node < tree) {
+        hairlut_float4 keys = hairlut_zeros();
+        for (int c = 0; c < corners.count; ++c) {
+            hairlut_corner corner = hairlut_corner_of(corners, c);
+            if (corner.weight > 0.0f) {
+                keys = hairlut_added(keys, corner.weight, HAIRLUT_FETCH(source, first + corner.at + node));
+            }
+        }
+        int branch = hairlut_blend(keys.x, keys.z, t) <= x ? 1 : 0;
+        branch += hairlut_blend(keys.y, keys.w, t) <= x ? 1 : 0;
+        node = 3 * node + 1 + branch;
+    }
+    return node - tree;
+}
+
+/* A place between two nodes: the gap, and how far along it, in [0,1]. */
+struct hairlut_place {
+    int gap;
+    int gaps;
+    float t;
+};
+
+/* Where x lies among the nodes that header texel `at` describes: (first texel, number of nodes, texels of the search tree).
+ * There is a texel (node, 1 / gap) for each gap, then the tree of the inner nodes. A single node has one gap, of no width. */
+HAIRLUT_FN hairlut_place hairlut_place_of(hairlut_model model, int at, float x)
+{
+    hairlut_float4 nodes = HAIRLUT_HEADER(model.source, at);
+    int first = model.first + int(nodes.x);
+    hairlut_place place;
+    place.gaps = max(int(nodes.y) - 1, 1);
+    place.gap = hairlut_search(model.source, hairlut_one_corner(), first + place.gaps, int(nodes.z), 0.0f, x);
+    hairlut_float4 node = HAIRLUT_FETCH(model.source, first + place.gap);
+    place.t = clamp((x - node.x) * node.y, 0.0f, 1.0f);
+    return place;
+}
+
+/* The value of parameter p, with NaN the least. Beyond HAIRLUT_PARAMETER_LIMIT it is the standard one. */
+HAIRLUT_FN float hairlut_parameter(hairlut_model model, int p)
+{
+    if (p < hairlut_max_parameters) {
+        return hairlut_bounded(model.parameters.value[p], -hairlut_huge);
+    }
+    hairlut_float4 range = HAIRLUT_HEADER(model.source, model.ranges + p);
+    return range.z;
+}
+
+HAIRLUT_FN bool hairlut_parameters_known(hairlut_model model)
+{
+    bool known = true;
+    for (int p = 0; p < hairlut_max_parameters; ++p) {
+        known = known && !(p < model.parameter_count && hairlut_is_nan(model.parameters.value[p]));
+    }
+    return known;
+}
+
+/* The corners around the model's parameters: of the mixture (0), of lobe k's theta table (1 + 2k), or of its azimuth's (2 + 2k).
+ * Behind the ranges there is a texel (number of axes, place of the first one, texels of a node) for each of these. An axis is a texel
+ * of its nodes as above, with the number of its parameter; nodes that differ along the last axis alone follow each other. */
+HAIRLUT_FN hairlut_corners hairlut_corners_of(hairlut_model model, int owner)
+{
+    hairlut_corners corners = hairlut_one_corner();
+    if (model.parameter_count == 0) {
+        return corners;
+    }
+    hairlut_float4 depends = HAIRLUT_HEADER(model.source, model.ranges + model.parameter_count + owner);
+    for (int a = 0; a < int(depends.x); ++a) {
+        int at = model.first + int(depends.y) + a;
+        hairlut_float4 axis = HAIRLUT_HEADER(model.source, at);
+        hairlut_place place = hairlut_place_of(model, at, hairlut_parameter(model, int(axis.w)));
+        corners.count *= 2;
+        corners.first = corners.first * int(axis.y) + place.gap;
+        corners.t = hairlut_replaced(corners.t, a, place.t);
+        corners.step = hairlut_replaced(hairlut_added(hairlut_zeros(), axis.y, corners.step), a, 1.0f);
+    }
+    corners.first *= int(depends.z);
+    corners.step = hairlut_added(hairlut_zeros(), depends.z, corners.step);
+    return corners;
+}
+
+/* A table whose three texels of numbers begin at `at`. */
+HAIRLUT_FN hairlut_axis hairlut_axis_at(hairlut_model model, int at, hairlut_corners corners)
+{
+    hairlut_float4 shape = HAIRLUT_HEADER(model.source, at);
+    hairlut_float4 range = HAIRLUT_HEADER(model.source, at + 1);
+    hairlut_float4 warp = HAIRLUT_HEADER(model.source, at + 2);
     hairlut_axis axis;
-    axis.source = source;
-    axis.first = model + int(shape.x);
+    axis.source = model.source;
+    axis.first = model.first + int(shape.x);
     axis.columns = int(shape.y);
     axis.height = int(shape.z);
     axis.tree = int(shape.w);
@@ -268,6 +454,7 @@ HAIRLUT_FN hairlut_axis hairlut_axis_at(HAIRLUT_SOURCE source, int model, int at
     axis.scale = warp.y;
     axis.origin = warp.z;
     axis.azimuth = int(warp.w);
+    axis.corners = corners;
     return axis;
 }
 
@@ -275,23 +462,9 @@ HAIRLUT_FN hairlut_lobe hairlut_lobe_at(hairlut_model model, int k)
 {
     int at = model.first + 3 + 6 * k;
     hairlut_lobe lobe;
-    lobe.theta = hairlut_axis_at(model.source, model.first, at);
-    lobe.phi = hairlut_axis_at(model.source, model.first, at + 3);
+    lobe.theta = hairlut_axis_at(model, at, hairlut_corners_of(model, 1 + 2 * k));
+    lobe.phi = hairlut_axis_at(model, at + 3, hairlut_corners_of(model, 2 + 2 * k));
     return lobe;
-}
-
-/* How many keys of a tree are at most x. A texel has two keys of a row and the same two of the row above, and three texels
- * below it; all leaves are at one depth. */
-HAIRLUT_FN int hairlut_search(HAIRLUT_SOURCE source, int first, int tree, float t, float x)
-{
-    int node = 0;
-    while (node < tree) {
-        hairlut_float4 keys = HAIRLUT_FETCH(source, first + node);
-        int branch = hairlut_blend(keys.x, keys.z, t) <= x ? 1 : 0;
-        branch += hairlut_blend(keys.y, keys.w, t) <= x ? 1 : 0;
-        node = 3 * node + 1 + branch;
-    }
-    return node - tree;
 }
 
 /* ---- one axis: the reading of a table ------------------------------------------------------------------------- */
@@ -373,8 +546,15 @@ HAIRLUT_FN hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, 
     int half_count = axis.columns / 2;
     int column = high ? half_count + i : i;
     int at = axis.first + half_count + column * axis.height + rows.row;
-    hairlut_float4 below = HAIRLUT_FETCH(axis.source, at);
-    hairlut_float4 above = HAIRLUT_FETCH(axis.source, at + 1);
+    hairlut_float4 below = hairlut_zeros();
+    hairlut_float4 above = hairlut_zeros();
+    for (int c = 0; c < axis.corners.count; ++c) {
+        hairlut_corner corner = hairlut_corner_of(axis.corners, c);
+        if (corner.weight > 0.0f) {
+            below = hairlut_added(below, corner.weight, HAIRLUT_FETCH(axis.source, at + corner.at));
+            above = hairlut_added(above, corner.weight, HAIRLUT_FETCH(axis.source, at + corner.at + 1));
+        }
+    }
     hairlut_float4 knot = HAIRLUT_FETCH(axis.source, axis.first + i);
     hairlut_cell cell;
     cell.x0 = hairlut_blend(below.x, above.x, rows.t);
@@ -392,7 +572,7 @@ HAIRLUT_FN hairlut_cell hairlut_axis_cell_around(hairlut_axis axis, hairlut_rows
 {
     int half_count = axis.columns / 2;
     int trees = axis.first + half_count + 2 * half_count * axis.height;
-    int n = hairlut_search(axis.source, trees + rows.row * axis.tree, axis.tree, rows.t, x);
+    int n = hairlut_search(axis.source, axis.corners, trees + rows.row * axis.tree, axis.tree, rows.t, x);
     bool high = n >= half_count;
     int i = high ? axis.columns - 2 - n : n;
     return hairlut_axis_cell(axis, rows, i, high);
@@ -538,13 +718,15 @@ HAIRLUT_FN hairlut_sample hairlut_sample_lobe(hairlut_model model, int lobe, flo
     if (!hairlut_has_lobe(model, lobe)) {
         return hairlut_finish(0.0f, 0.0f, 0.0f);
     }
-    return hairlut_lobe_sample(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, u_theta, u_phi);
+    hairlut_sample s = hairlut_lobe_sample(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, u_theta, u_phi);
+    float known = hairlut_parameters_known(model) ? s.pdf_angle : 0.0f;
+    return hairlut_finish(s.theta_i, s.phi_i, known);
 }
 
 /* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
 HAIRLUT_FN float hairlut_pdf_lobe(hairlut_model model, int lobe, float theta_r, float phi_r, float theta_i, float phi_i)
 {
-    if (!hairlut_has_lobe(model, lobe)) {
+    if (!hairlut_has_lobe(model, lobe) || !hairlut_parameters_known(model)) {
         return 0.0f;
     }
     return hairlut_lobe_pdf(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, theta_i, phi_i);
@@ -574,25 +756,42 @@ HAIRLUT_FN hairlut_numbers hairlut_invert_lobe(hairlut_model model, int lobe, fl
 
 /* ---- the mixture ---------------------------------------------------------------------------------------------- */
 
-/* A place between two nodes: the gap, and how far along it, in [0,1]. */
-struct hairlut_place {
-    int gap;
-    int gaps;
-    float t;
+/* One lobe at the four nodes around theta_r and the offset. */
+struct hairlut_pair {
+    hairlut_float4 share; // low offset: row below theta_r, row above; high offset: the same
+    hairlut_float4 turn;  // low offset: row below theta_r, arc to the row above; high offset: the same
 };
 
-/* Where x lies among the nodes that header texel `at` describes: (first texel, number of nodes, texels of the search tree).
- * There is a texel (node, 1 / gap) for each gap, then the tree of the inner nodes. A single node has one gap, of no width. */
-HAIRLUT_FN hairlut_place hairlut_place_of(hairlut_model model, int at, float x)
+/* The texels (share, turn) at `at`, blended over the corners: each of the four turns along the shorter arcs from the lowest corner's. */
+HAIRLUT_FN hairlut_pair hairlut_pair_at(hairlut_model model, hairlut_corners corners, int at)
 {
-    hairlut_float4 nodes = HAIRLUT_HEADER(model.source, at);
-    int first = model.first + int(nodes.x);
-    hairlut_place place;
-    place.gaps = max(int(nodes.y) - 1, 1);
-    place.gap = hairlut_search(model.source, first + place.gaps, int(nodes.z), 0.0f, x);
-    hairlut_float4 node = HAIRLUT_FETCH(model.source, first + place.gap);
-    place.t = clamp((x - node.x) * node.y, 0.0f, 1.0f);
-    return place;
+    hairlut_float4 lowest = HAIRLUT_FETCH(model.source, at + corners.first + 1);
+    hairlut_float4 arcs = hairlut_zeros();
+    hairlut_pair pair;
+    pair.share = hairlut_zeros();
+    for (int c = 0; c < corners.count; ++c) {
+        hairlut_corner corner = hairlut_corner_of(corners, c);
+        if (corner.weight > 0.0f) {
+            pair.share = hairlut_added(pair.share, corner.weight, HAIRLUT_FETCH(model.source, at + corner.at));
+        }
+        if (c > 0 && corner.weight > 0.0f) {
+            hairlut_float4 turn = HAIRLUT_FETCH(model.source, at + corner.at + 1);
+            hairlut_float4 arc;
+            arc.x = hairlut_wrap(turn.x - lowest.x, -hairlut_pi);
+            arc.y = hairlut_wrap((turn.x - lowest.x) + (turn.y - lowest.y), -hairlut_pi);
+            arc.z = hairlut_wrap(turn.z - lowest.z, -hairlut_pi);
+            arc.w = hairlut_wrap((turn.z - lowest.z) + (turn.w - lowest.w), -hairlut_pi);
+            arcs = hairlut_added(arcs, corner.weight, arc);
+        }
+    }
+    pair.turn = lowest;
+    if (corners.count > 1) {
+        pair.turn.x = lowest.x + arcs.x;
+        pair.turn.y = hairlut_wrap(lowest.y + (arcs.y - arcs.x), -hairlut_pi);
+        pair.turn.z = lowest.z + arcs.z;
+        pair.turn.w = hairlut_wrap(lowest.w + (arcs.w - arcs.z), -hairlut_pi);
+    }
+    return pair;
 }
 
 /* Shares and turns at theta_r and the offset h in [-1,1] at which the fibre is hit: linear in theta_r and in asin(h). A turn goes
@@ -603,17 +802,17 @@ HAIRLUT_FN hairlut_mixture hairlut_mixture_at(hairlut_model model, float theta_r
     float side = model.mirrored && h < 0.0f ? -1.0f : 1.0f;
     hairlut_place row = hairlut_place_of(model, model.first + 1, hairlut_bounded(theta_r, -hairlut_huge));
     hairlut_place column = hairlut_place_of(model, model.first + 2, hairlut_asin(side * h));
-    int values = model.values + 2 * model.lobes * (row.gap * column.gaps + column.gap);
+    int values = model.values + model.stride * (row.gap * column.gaps + column.gap);
+    hairlut_corners corners = hairlut_corners_of(model, 0);
     hairlut_mixture mixture;
     mixture.side = side;
-    mixture.known = !hairlut_is_nan(theta_r) && !hairlut_is_nan(offset);
+    mixture.known = !hairlut_is_nan(theta_r) && !hairlut_is_nan(offset) && hairlut_parameters_known(model);
     for (int k = 0; k < model.lobes; ++k) {
-        hairlut_float4 share = HAIRLUT_FETCH(model.source, values + 2 * k);    // (low offset: row, row above; high offset: the same)
-        hairlut_float4 turn = HAIRLUT_FETCH(model.source, values + 2 * k + 1); // (low offset: row, arc to the row above; high ...)
-        float share_low = hairlut_blend(share.x, share.y, row.t);
-        float share_high = hairlut_blend(share.z, share.w, row.t);
-        float turn_low = turn.x + row.t * turn.y;
-        float turn_high = turn.z + row.t * turn.w;
+        hairlut_pair pair = hairlut_pair_at(model, corners, values + 2 * k);
+        float share_low = hairlut_blend(pair.share.x, pair.share.y, row.t);
+        float share_high = hairlut_blend(pair.share.z, pair.share.w, row.t);
+        float turn_low = pair.turn.x + row.t * pair.turn.y;
+        float turn_high = pair.turn.z + row.t * pair.turn.w;
         mixture.share[k] = hairlut_blend(share_low, share_high, column.t);
         mixture.turn[k] = turn_low + column.t * hairlut_wrap(turn_high - turn_low, -hairlut_pi);
     }
@@ -707,6 +906,26 @@ HAIRLUT_FN hairlut_sample hairlut_sample_hair(hairlut_model model, float theta_r
 HAIRLUT_FN float hairlut_pdf_hair(hairlut_model model, float theta_r, float phi_r, float offset, float theta_i, float phi_i)
 {
     return hairlut_pdf_hair_at(model, hairlut_mixture_at(model, theta_r, offset), theta_r, phi_r, theta_i, phi_i);
+}
+
+/* The same for a strand with these parameters. Where a shader calls both, or takes the mixture once, set model.parameters. */
+HAIRLUT_FN hairlut_model hairlut_strand(hairlut_model model, hairlut_parameters parameters)
+{
+    hairlut_model strand = model;
+    strand.parameters = parameters;
+    return strand;
+}
+
+HAIRLUT_FN hairlut_sample hairlut_sample_strand(hairlut_model model, hairlut_parameters parameters, float theta_r, float phi_r,
+                                                float offset, float u_lobe, float u_theta, float u_phi)
+{
+    return hairlut_sample_hair(hairlut_strand(model, parameters), theta_r, phi_r, offset, u_lobe, u_theta, u_phi);
+}
+
+HAIRLUT_FN float hairlut_pdf_strand(hairlut_model model, hairlut_parameters parameters, float theta_r, float phi_r, float offset,
+                                    float theta_i, float phi_i)
+{
+    return hairlut_pdf_hair(hairlut_strand(model, parameters), theta_r, phi_r, offset, theta_i, phi_i);
 }
 
 } // namespace hairlut_gpu

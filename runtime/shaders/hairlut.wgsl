@@ -17,6 +17,7 @@
  * README.md has the rest: bindings, fetches, limits. */
 
 const hairlut_max_lobes: i32 = 16;
+const hairlut_max_parameters: i32 = 8;
 
 fn hairlut_bits(x: f32) -> u32 {
     return bitcast<u32>(x);
@@ -30,22 +31,32 @@ const hairlut_uniform: i32 = 0; // azimuths: see hairlut_axis
 const hairlut_difference: i32 = 1;
 const hairlut_sum: i32 = 2;
 
-/* One hair in the stream of texels that `hairlut export --to raw` writes. */
-struct hairlut_model {
-    source: i32,    // passed to hairlut_fetch and hairlut_header
-    first: i32,     // the texel at which the model begins
-    lobes: i32,
-    values: i32,    // the first texel of the mixture's shares and turns
-    mirrored: bool, // nodes of the offset are >= 0, and -h mirrors h
+/* What differs from strand to strand, such as a roughness: a value for each of the model's named parameters, in the order of
+ * hair.json. Values are clamped to the parameter's range; with NaN the density is 0. */
+struct hairlut_parameters {
+    value: array<f32, hairlut_max_parameters>,
 }
 
-/* The lobes' shares and turns at one theta_r and offset. Shares are in any unit: replace them by your own where a shader knows
+/* One hair in the stream of texels that `hairlut export --to raw` writes. */
+struct hairlut_model {
+    source: i32,                    // passed to hairlut_fetch and hairlut_header
+    first: i32,                     // the texel at which the model begins
+    lobes: i32,
+    values: i32,                    // the first texel of the mixture's shares and turns
+    stride: i32,                    // texels of shares and turns for a gap between nodes: two for each of the stream's lobes
+    mirrored: bool,                 // nodes of the offset are >= 0, and -h mirrors h
+    ranges: i32,                    // the first parameter's texel
+    parameter_count: i32,           // 0 to 8
+    parameters: hairlut_parameters, // every function reads the model at these: the standard values, or your own
+}
+
+/* The lobes' shares and turns at one theta_r, offset and set of parameters. Shares are in any unit: replace them by your own where a shader knows
  * better. A negative one counts as 0; with one that is infinite or NaN the density is 0. */
 struct hairlut_mixture {
     share: array<f32, hairlut_max_lobes>,
     turn: array<f32, hairlut_max_lobes>, // rad
     side: f32,                           // -1: azimuths are mirrored
-    known: bool,                         // neither theta_r nor the offset was NaN
+    known: bool,                         // none of the three was NaN
 }
 
 struct hairlut_sample {
@@ -59,6 +70,20 @@ struct hairlut_sample {
 struct hairlut_numbers {
     u_theta: f32,
     u_phi: f32,
+}
+
+/* Where a strand lies among the nodes of the parameters that a table, or the mixture, depends on. Its texels are those of the 2^d
+ * nodes around it, each weighted by the product of t, where it is the upper node of an axis, or of 1 - t. */
+struct hairlut_corners {
+    count: i32,  // 2^d; 1 without parameters
+    first: i32,  // texels from those of the first node to those of the lowest corner
+    t: vec4f,    // in [0,1], along each axis; 0 where there is none
+    step: vec4f, // texels from a node to the next one, likewise
+}
+
+struct hairlut_corner {
+    at: i32, // texels from those of the first node
+    weight: f32,
 }
 
 /* One table and the numbers to read it by. */
@@ -76,6 +101,7 @@ struct hairlut_axis {
     scale: f32,      // column = F(m + e) * scale - origin
     origin: f32,
     azimuth: i32,    // what a lobe's second table holds: nothing (the azimuth is uniform), phi_i - phi_r or phi_i + phi_r
+    corners: hairlut_corners,
 }
 
 struct hairlut_lobe {
@@ -148,26 +174,173 @@ fn hairlut_blend(a: f32, b: f32, t: f32) -> f32 {
 
 /* ---- the stream ----------------------------------------------------------------------------------------------- */
 
-/* The model whose first texel is `first`. */
+/* The model whose first texel is `first`, with the standard values of its parameters. */
 fn hairlut_model_at(source: i32, first: i32) -> hairlut_model {
     let head = hairlut_header(source, first);
     var model: hairlut_model;
     model.source = source;
     model.first = first;
-    model.lobes = min(i32(head.x), hairlut_max_lobes);
+    model.stride = 2 * i32(abs(head.x));
+    model.lobes = min(model.stride / 2, hairlut_max_lobes);
     model.mirrored = head.y > 0.5f;
     model.values = first + i32(head.z);
+    model.ranges = first + 3 + 3 * model.stride;
+    model.parameter_count = 0;
+    if (head.x < 0.0f) {
+        let offsets = hairlut_header(source, first + 2);
+        model.parameter_count = i32(offsets.w);
+    }
+    for (var p = 0; p < hairlut_max_parameters; p++) {
+        model.parameters.value[p] = 0.0f;
+        if (p < model.parameter_count) {
+            let range = hairlut_header(source, model.ranges + p);
+            model.parameters.value[p] = range.z;
+        }
+    }
     return model;
 }
 
+fn hairlut_zeros() -> vec4f {
+    var zeros: vec4f;
+    zeros.x = 0.0f;
+    zeros.y = 0.0f;
+    zeros.z = 0.0f;
+    zeros.w = 0.0f;
+    return zeros;
+}
+
+/* v, with x in place of component a. */
+fn hairlut_replaced(v: vec4f, a: i32, x: f32) -> vec4f {
+    var changed: vec4f;
+    changed.x = select(v.x, x, a == 0);
+    changed.y = select(v.y, x, a == 1);
+    changed.z = select(v.z, x, a == 2);
+    changed.w = select(v.w, x, a == 3);
+    return changed;
+}
+
+/* sum + weight v */
+fn hairlut_added(sum: vec4f, weight: f32, v: vec4f) -> vec4f {
+    var total: vec4f;
+    total.x = sum.x + weight * v.x;
+    total.y = sum.y + weight * v.y;
+    total.z = sum.z + weight * v.z;
+    total.w = sum.w + weight * v.w;
+    return total;
+}
+
+fn hairlut_one_corner() -> hairlut_corners {
+    var corners: hairlut_corners;
+    corners.count = 1;
+    corners.first = 0;
+    corners.t = hairlut_zeros();
+    corners.step = hairlut_zeros();
+    return corners;
+}
+
+/* Corner c of a set: bit a of c is 1 where it is the upper node of axis a. */
+fn hairlut_corner_of(corners: hairlut_corners, c: i32) -> hairlut_corner {
+    let x = select(1.0f - corners.t.x, corners.t.x, (c & 1) != 0);
+    let y = select(1.0f - corners.t.y, corners.t.y, (c & 2) != 0);
+    let z = select(1.0f - corners.t.z, corners.t.z, (c & 4) != 0);
+    let w = select(1.0f - corners.t.w, corners.t.w, (c & 8) != 0);
+    var steps = select(0.0f, corners.step.x, (c & 1) != 0);
+    steps += select(0.0f, corners.step.y, (c & 2) != 0);
+    steps += select(0.0f, corners.step.z, (c & 4) != 0);
+    steps += select(0.0f, corners.step.w, (c & 8) != 0);
+    var corner: hairlut_corner;
+    corner.at = corners.first + i32(steps);
+    corner.weight = x * y * z * w;
+    return corner;
+}
+
+/* How many keys of a tree, blended over the corners, are at most x. A texel has two keys of a row and the same two of the row
+ * above, and three texels below it; all leaves are at one depth. */
+fn hairlut_search(source: i32, corners: hairlut_corners, first: i32, tree: i32, t: f32, x: f32) -> i32 {
+    var node = 0;
+    while (node < tree) {
+        var keys = hairlut_zeros();
+        for (var c = 0; c < corners.count; c++) {
+            let corner = hairlut_corner_of(corners, c);
+            if (corner.weight > 0.0f) {
+                keys = hairlut_added(keys, corner.weight, hairlut_fetch(source, first + corner.at + node));
+            }
+        }
+        var branch = select(0, 1, hairlut_blend(keys.x, keys.z, t) <= x);
+        branch += select(0, 1, hairlut_blend(keys.y, keys.w, t) <= x);
+        node = 3 * node + 1 + branch;
+    }
+    return node - tree;
+}
+
+/* A place between two nodes: the gap, and how far along it, in [0,1]. */
+struct hairlut_place {
+    gap: i32,
+    gaps: i32,
+    t: f32,
+}
+
+/* Where x lies among the nodes that header texel `at` describes: (first texel, number of nodes, texels of the search tree).
+ * There is a texel (node, 1 / gap) for each gap, then the tree of the inner nodes. A single node has one gap, of no width. */
+fn hairlut_place_of(model: hairlut_model, at: i32, x: f32) -> hairlut_place {
+    let nodes = hairlut_header(model.source, at);
+    let first = model.first + i32(nodes.x);
+    var place: hairlut_place;
+    place.gaps = max(i32(nodes.y) - 1, 1);
+    place.gap = hairlut_search(model.source, hairlut_one_corner(), first + place.gaps, i32(nodes.z), 0.0f, x);
+    let node = hairlut_fetch(model.source, first + place.gap);
+    place.t = clamp((x - node.x) * node.y, 0.0f, 1.0f);
+    return place;
+}
+
+/* The value of parameter p, with NaN the least. Beyond HAIRLUT_PARAMETER_LIMIT it is the standard one. */
+fn hairlut_parameter(model: hairlut_model, p: i32) -> f32 {
+    if (p < hairlut_max_parameters) {
+        return hairlut_bounded(model.parameters.value[p], -hairlut_huge);
+    }
+    let range = hairlut_header(model.source, model.ranges + p);
+    return range.z;
+}
+
+fn hairlut_parameters_known(model: hairlut_model) -> bool {
+    var known = true;
+    for (var p = 0; p < hairlut_max_parameters; p++) {
+        known = known && !(p < model.parameter_count && hairlut_is_nan(model.parameters.value[p]));
+    }
+    return known;
+}
+
+/* The corners around the model's parameters: of the mixture (0), of lobe k's theta table (1 + 2k), or of its azimuth's (2 + 2k).
+ * Behind the ranges there is a texel (number of axes, place of the first one, texels of a node) for each of these. An axis is a texel
+ * of its nodes as above, with the number of its parameter; nodes that differ along the last axis alone follow each other. */
+fn hairlut_corners_of(model: hairlut_model, owner: i32) -> hairlut_corners {
+    var corners = hairlut_one_corner();
+    if (model.parameter_count == 0) {
+        return corners;
+    }
+    let depends = hairlut_header(model.source, model.ranges + model.parameter_count + owner);
+    for (var a = 0; a < i32(depends.x); a++) {
+        let at = model.first + i32(depends.y) + a;
+        let axis = hairlut_header(model.source, at);
+        let place = hairlut_place_of(model, at, hairlut_parameter(model, i32(axis.w)));
+        corners.count *= 2;
+        corners.first = corners.first * i32(axis.y) + place.gap;
+        corners.t = hairlut_replaced(corners.t, a, place.t);
+        corners.step = hairlut_replaced(hairlut_added(hairlut_zeros(), axis.y, corners.step), a, 1.0f);
+    }
+    corners.first *= i32(depends.z);
+    corners.step = hairlut_added(hairlut_zeros(), depends.z, corners.step);
+    return corners;
+}
+
 /* A table whose three texels of numbers begin at `at`. */
-fn hairlut_axis_at(source: i32, model: i32, at: i32) -> hairlut_axis {
-    let shape = hairlut_header(source, at);
-    let range = hairlut_header(source, at + 1);
-    let warp = hairlut_header(source, at + 2);
+fn hairlut_axis_at(model: hairlut_model, at: i32, corners: hairlut_corners) -> hairlut_axis {
+    let shape = hairlut_header(model.source, at);
+    let range = hairlut_header(model.source, at + 1);
+    let warp = hairlut_header(model.source, at + 2);
     var axis: hairlut_axis;
-    axis.source = source;
-    axis.first = model + i32(shape.x);
+    axis.source = model.source;
+    axis.first = model.first + i32(shape.x);
     axis.columns = i32(shape.y);
     axis.height = i32(shape.z);
     axis.tree = i32(shape.w);
@@ -179,28 +352,16 @@ fn hairlut_axis_at(source: i32, model: i32, at: i32) -> hairlut_axis {
     axis.scale = warp.y;
     axis.origin = warp.z;
     axis.azimuth = i32(warp.w);
+    axis.corners = corners;
     return axis;
 }
 
 fn hairlut_lobe_at(model: hairlut_model, k: i32) -> hairlut_lobe {
     let at = model.first + 3 + 6 * k;
     var lobe: hairlut_lobe;
-    lobe.theta = hairlut_axis_at(model.source, model.first, at);
-    lobe.phi = hairlut_axis_at(model.source, model.first, at + 3);
+    lobe.theta = hairlut_axis_at(model, at, hairlut_corners_of(model, 1 + 2 * k));
+    lobe.phi = hairlut_axis_at(model, at + 3, hairlut_corners_of(model, 2 + 2 * k));
     return lobe;
-}
-
-/* How many keys of a tree are at most x. A texel has two keys of a row and the same two of the row above, and three texels
- * below it; all leaves are at one depth. */
-fn hairlut_search(source: i32, first: i32, tree: i32, t: f32, x: f32) -> i32 {
-    var node = 0;
-    while (node < tree) {
-        let keys = hairlut_fetch(source, first + node);
-        var branch = select(0, 1, hairlut_blend(keys.x, keys.z, t) <= x);
-        branch += select(0, 1, hairlut_blend(keys.y, keys.w, t) <= x);
-        node = 3 * node + 1 + branch;
-    }
-    return node - tree;
 }
 
 /* ---- one axis: the reading of a table ------------------------------------------------------------------------- */
@@ -278,8 +439,15 @@ fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32, high: bool)
     let half_count = axis.columns / 2;
     let column = select(i, half_count + i, high);
     let at = axis.first + half_count + column * axis.height + rows.row;
-    let below = hairlut_fetch(axis.source, at);
-    let above = hairlut_fetch(axis.source, at + 1);
+    var below = hairlut_zeros();
+    var above = hairlut_zeros();
+    for (var c = 0; c < axis.corners.count; c++) {
+        let corner = hairlut_corner_of(axis.corners, c);
+        if (corner.weight > 0.0f) {
+            below = hairlut_added(below, corner.weight, hairlut_fetch(axis.source, at + corner.at));
+            above = hairlut_added(above, corner.weight, hairlut_fetch(axis.source, at + corner.at + 1));
+        }
+    }
     let knot = hairlut_fetch(axis.source, axis.first + i);
     var cell: hairlut_cell;
     cell.x0 = hairlut_blend(below.x, above.x, rows.t);
@@ -296,7 +464,7 @@ fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32, high: bool)
 fn hairlut_axis_cell_around(axis: hairlut_axis, rows: hairlut_rows, x: f32) -> hairlut_cell {
     let half_count = axis.columns / 2;
     let trees = axis.first + half_count + 2 * half_count * axis.height;
-    let n = hairlut_search(axis.source, trees + rows.row * axis.tree, axis.tree, rows.t, x);
+    let n = hairlut_search(axis.source, axis.corners, trees + rows.row * axis.tree, axis.tree, rows.t, x);
     let high = n >= half_count;
     let i = select(n, axis.columns - 2 - n, high);
     return hairlut_axis_cell(axis, rows, i, high);
@@ -427,12 +595,14 @@ fn hairlut_sample_lobe(model: hairlut_model, lobe: i32, theta_r: f32, phi_r: f32
     if (!hairlut_has_lobe(model, lobe)) {
         return hairlut_finish(0.0f, 0.0f, 0.0f);
     }
-    return hairlut_lobe_sample(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, u_theta, u_phi);
+    let s = hairlut_lobe_sample(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, u_theta, u_phi);
+    let known = select(0.0f, s.pdf_angle, hairlut_parameters_known(model));
+    return hairlut_finish(s.theta_i, s.phi_i, known);
 }
 
 /* Density, per rad^2, with which the function above draws (theta_i, phi_i). phi_i may be any finite azimuth. */
 fn hairlut_pdf_lobe(model: hairlut_model, lobe: i32, theta_r: f32, phi_r: f32, theta_i: f32, phi_i: f32) -> f32 {
-    if (!hairlut_has_lobe(model, lobe)) {
+    if (!hairlut_has_lobe(model, lobe) || !hairlut_parameters_known(model)) {
         return 0.0f;
     }
     return hairlut_lobe_pdf(hairlut_lobe_at(model, lobe), 1.0f, 0.0f, theta_r, phi_r, theta_i, phi_i);
@@ -461,24 +631,41 @@ fn hairlut_invert_lobe(model: hairlut_model, lobe: i32, theta_r: f32, phi_r: f32
 
 /* ---- the mixture ---------------------------------------------------------------------------------------------- */
 
-/* A place between two nodes: the gap, and how far along it, in [0,1]. */
-struct hairlut_place {
-    gap: i32,
-    gaps: i32,
-    t: f32,
+/* One lobe at the four nodes around theta_r and the offset. */
+struct hairlut_pair {
+    share: vec4f, // low offset: row below theta_r, row above; high offset: the same
+    turn: vec4f,  // low offset: row below theta_r, arc to the row above; high offset: the same
 }
 
-/* Where x lies among the nodes that header texel `at` describes: (first texel, number of nodes, texels of the search tree).
- * There is a texel (node, 1 / gap) for each gap, then the tree of the inner nodes. A single node has one gap, of no width. */
-fn hairlut_place_of(model: hairlut_model, at: i32, x: f32) -> hairlut_place {
-    let nodes = hairlut_header(model.source, at);
-    let first = model.first + i32(nodes.x);
-    var place: hairlut_place;
-    place.gaps = max(i32(nodes.y) - 1, 1);
-    place.gap = hairlut_search(model.source, first + place.gaps, i32(nodes.z), 0.0f, x);
-    let node = hairlut_fetch(model.source, first + place.gap);
-    place.t = clamp((x - node.x) * node.y, 0.0f, 1.0f);
-    return place;
+/* The texels (share, turn) at `at`, blended over the corners: each of the four turns along the shorter arcs from the lowest corner's. */
+fn hairlut_pair_at(model: hairlut_model, corners: hairlut_corners, at: i32) -> hairlut_pair {
+    let lowest = hairlut_fetch(model.source, at + corners.first + 1);
+    var arcs = hairlut_zeros();
+    var pair: hairlut_pair;
+    pair.share = hairlut_zeros();
+    for (var c = 0; c < corners.count; c++) {
+        let corner = hairlut_corner_of(corners, c);
+        if (corner.weight > 0.0f) {
+            pair.share = hairlut_added(pair.share, corner.weight, hairlut_fetch(model.source, at + corner.at));
+        }
+        if (c > 0 && corner.weight > 0.0f) {
+            let turn = hairlut_fetch(model.source, at + corner.at + 1);
+            var arc: vec4f;
+            arc.x = hairlut_wrap(turn.x - lowest.x, -hairlut_pi);
+            arc.y = hairlut_wrap((turn.x - lowest.x) + (turn.y - lowest.y), -hairlut_pi);
+            arc.z = hairlut_wrap(turn.z - lowest.z, -hairlut_pi);
+            arc.w = hairlut_wrap((turn.z - lowest.z) + (turn.w - lowest.w), -hairlut_pi);
+            arcs = hairlut_added(arcs, corner.weight, arc);
+        }
+    }
+    pair.turn = lowest;
+    if (corners.count > 1) {
+        pair.turn.x = lowest.x + arcs.x;
+        pair.turn.y = hairlut_wrap(lowest.y + (arcs.y - arcs.x), -hairlut_pi);
+        pair.turn.z = lowest.z + arcs.z;
+        pair.turn.w = hairlut_wrap(lowest.w + (arcs.w - arcs.z), -hairlut_pi);
+    }
+    return pair;
 }
 
 /* Shares and turns at theta_r and the offset h in [-1,1] at which the fibre is hit: linear in theta_r and in asin(h). A turn goes
@@ -488,17 +675,17 @@ fn hairlut_mixture_at(model: hairlut_model, theta_r: f32, offset: f32) -> hairlu
     let side = select(1.0f, -1.0f, model.mirrored && h < 0.0f);
     let row = hairlut_place_of(model, model.first + 1, hairlut_bounded(theta_r, -hairlut_huge));
     let column = hairlut_place_of(model, model.first + 2, hairlut_asin(side * h));
-    let values = model.values + 2 * model.lobes * (row.gap * column.gaps + column.gap);
+    let values = model.values + model.stride * (row.gap * column.gaps + column.gap);
+    let corners = hairlut_corners_of(model, 0);
     var mixture: hairlut_mixture;
     mixture.side = side;
-    mixture.known = !hairlut_is_nan(theta_r) && !hairlut_is_nan(offset);
+    mixture.known = !hairlut_is_nan(theta_r) && !hairlut_is_nan(offset) && hairlut_parameters_known(model);
     for (var k = 0; k < model.lobes; k++) {
-        let share = hairlut_fetch(model.source, values + 2 * k);    // (low offset: row, row above; high offset: the same)
-        let turn = hairlut_fetch(model.source, values + 2 * k + 1); // (low offset: row, arc to the row above; high ...)
-        let share_low = hairlut_blend(share.x, share.y, row.t);
-        let share_high = hairlut_blend(share.z, share.w, row.t);
-        let turn_low = turn.x + row.t * turn.y;
-        let turn_high = turn.z + row.t * turn.w;
+        let pair = hairlut_pair_at(model, corners, values + 2 * k);
+        let share_low = hairlut_blend(pair.share.x, pair.share.y, row.t);
+        let share_high = hairlut_blend(pair.share.z, pair.share.w, row.t);
+        let turn_low = pair.turn.x + row.t * pair.turn.y;
+        let turn_high = pair.turn.z + row.t * pair.turn.w;
         mixture.share[k] = hairlut_blend(share_low, share_high, column.t);
         mixture.turn[k] = turn_low + column.t * hairlut_wrap(turn_high - turn_low, -hairlut_pi);
     }
@@ -585,4 +772,21 @@ fn hairlut_sample_hair(model: hairlut_model, theta_r: f32, phi_r: f32, offset: f
 
 fn hairlut_pdf_hair(model: hairlut_model, theta_r: f32, phi_r: f32, offset: f32, theta_i: f32, phi_i: f32) -> f32 {
     return hairlut_pdf_hair_at(model, hairlut_mixture_at(model, theta_r, offset), theta_r, phi_r, theta_i, phi_i);
+}
+
+/* The same for a strand with these parameters. Where a shader calls both, or takes the mixture once, set model.parameters. */
+fn hairlut_strand(model: hairlut_model, parameters: hairlut_parameters) -> hairlut_model {
+    var strand = model;
+    strand.parameters = parameters;
+    return strand;
+}
+
+fn hairlut_sample_strand(model: hairlut_model, parameters: hairlut_parameters, theta_r: f32, phi_r: f32, offset: f32,
+                         u_lobe: f32, u_theta: f32, u_phi: f32) -> hairlut_sample {
+    return hairlut_sample_hair(hairlut_strand(model, parameters), theta_r, phi_r, offset, u_lobe, u_theta, u_phi);
+}
+
+fn hairlut_pdf_strand(model: hairlut_model, parameters: hairlut_parameters, theta_r: f32, phi_r: f32, offset: f32,
+                      theta_i: f32, phi_i: f32) -> f32 {
+    return hairlut_pdf_hair(hairlut_strand(model, parameters), theta_r, phi_r, offset, theta_i, phi_i);
 }

@@ -2,7 +2,7 @@
 """Models over parameters of the hair: verified as they are, exported at fixed parameters."""
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ from hairlut import exr, interpolant, verify
 from hairlut.cli import main
 from hairlut.export import TARGETS
 from hairlut.fixed import as_floats
+from hairlut.stream import stream
 from precompute.parametric import model
 
 
@@ -45,15 +46,6 @@ def test_every_target_takes_fixed_parameters(directory, tmp_path, target):
     assert export(directory, "--at", "tilt=2", "--to", target, "--out", tmp_path / "out" / "file") == 0
 
 
-@pytest.mark.parametrize("target", ["npz", "raw"])
-def test_targets_without_parameters_refuse_a_model_that_has_them(directory, tmp_path, target, capsys):
-    assert export(directory, "--to", target, "--out", tmp_path / "out") == 2
-    error = capsys.readouterr().err
-    assert "depends on beta_m, absorption, tilt" in error
-    assert "--at beta_m=0.3" in error
-    assert not (tmp_path / "out").exists()
-
-
 @pytest.mark.parametrize(
     ("at", "said"),
     [
@@ -71,10 +63,26 @@ def test_wrong_values_are_refused(directory, tmp_path, at, said, capsys):
     assert not (tmp_path / "out").exists()
 
 
+def test_raw_floats_and_npz_carry_parameters(directory, tmp_path):
+    given = model()
+    for target in ("raw", "npz"):
+        assert export(directory, "--to", target, "--out", tmp_path) == 0
+    hair = json.loads((tmp_path / "parametric" / "hair.json").read_text())
+    assert hair["parameters"] == [asdict(each) for each in given.parameters]
+    head, read = stream(given)[: hair["head"]], np.fromfile(tmp_path / "parametric" / "hair.f32", "<f4")
+    assert np.array_equal(read[: head.size], head.ravel())
+    assert head[3 + 6 * 3, :3].tolist() == np.float32([0.1, 0.9, 0.3]).tolist()
+    assert head[-1, [1, 3]].tolist() == [2, 2]  # the last axis: nodes of tilt, of the last lobe's theta
+    for table in given.tables:
+        sidecar = json.loads((tmp_path / "parametric" / f"{table.name}.json").read_text())
+        assert (sidecar["height"], sidecar["width"]) == table.texels.shape
+        with np.load(tmp_path / "parametric" / f"{table.name}.npz") as file:
+            assert np.array_equal(file["texels"], table.texels)
+            assert all(np.array_equal(file[f"nodes_{axis.name}"], axis.nodes) for axis in table.axes)
+
+
 def test_single_tables_are_not_fixed(directory, tmp_path, capsys):
     path = directory / "tt_theta.exr"
-    assert export(path, "--to", "npz", "--out", tmp_path) == 2
-    assert "depends on absorption, beta_m" in capsys.readouterr().err
     assert export(path, "--at", "beta_m=0.2", "--to", "npz", "--out", tmp_path) == 2
     assert "expected a directory" in capsys.readouterr().err
 

@@ -49,7 +49,7 @@ def main() -> None:
     models |= {name: make() for name, make in MODELS.items()}
     rows = []
     for name, model in models.items():
-        records = np.concatenate([hard_records(model), random_records(RANDOM, len(model.lobes))])
+        records = np.concatenate([hard_records(model), random_records(RANDOM, model)])
         rows += [row(backend, name, Reference(model), scene(model), records) for backend in BACKENDS]
     limits = (f"{limit:.0e}" for limit in (ANGLE_TOLERANCE, DENSITY_TOLERANCE, NUMBER_TOLERANCE))
     rows.append(["tolerance", "", "", *limits, "0.1 %"])

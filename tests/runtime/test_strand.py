@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Models over parameters: read as in double precision, and all that holds of any model at every strand."""
 
-
 import numpy as np
 import pytest
 from runtime.strands import PARAMETERS

@@ -25,7 +25,7 @@ ANGLE_TOLERANCE = 6e-6  # rad
 DENSITY_TOLERANCE = 1e-4  # relative
 NUMBER_TOLERANCE = 1e-5  # of an inverted u
 BORDERING_TOLERANCE = 1e-3  # share of the records
-THETA_R, PHI_R, OFFSET, LOBE, SHARE, U_LOBE, U_THETA, U_PHI, THETA_I, PHI_I = range(10)
+THETA_R, PHI_R, OFFSET, LOBE, SHARE, U_LOBE, U_THETA, U_PHI, THETA_I, PHI_I, FIRST_PARAMETER = range(11)
 SAMPLES = {"lobe": 0, "hair": 4, "given": 8}
 DENSITIES = {"lobe": 12, "hair": 13, "given": 14}
 COSINE = 15
@@ -75,21 +75,35 @@ class Reference:
             np.ascontiguousarray(part, np.float32)
             for part in (mixture.theta_r, mixture.offset, mixture.share, mixture.turn)
         ]
+        parameters = _parameters(model, tables)
         message = ctypes.create_string_buffer(512)
         pointers = (ctypes.c_void_p * len(tables))(*(t.ctypes.data for t in texels))
         created = harness().create(
             len(tables), pointers, _address(sizes), _address(numbers), len(lobes), _address(lobes),
-            _address(grid), *map(_address, nodes), message,
+            _address(grid), *map(_address, nodes), len(model.parameters), *map(_address, parameters), message,
         )  # fmt: skip
         assert created, message.value.decode()
-        self.model, self.lobes = ctypes.c_void_p(created), len(lobes)
+        self.model, self._created = model, ctypes.c_void_p(created)
 
     def __call__(self, records: np.ndarray) -> np.ndarray:
         """(n, OUTPUTS) results of the (n, INPUTS) records."""
         records = np.ascontiguousarray(records, np.float32)
         out = np.empty((len(records), OUTPUTS), np.float32)
-        harness().evaluate(self.model, ctypes.c_size_t(len(records)), _address(records), _address(out))
+        harness().evaluate(self._created, ctypes.c_size_t(len(records)), _address(records), _address(out))
         return out
+
+
+def _parameters(model, tables) -> list[np.ndarray]:
+    """ranges, axes and nodes of `create` in harness.c."""
+    names = [each.name for each in model.parameters]
+    axes, nodes = [], []
+    for owner in (*tables, model.mixture):
+        axes += [len(owner.axes)]
+        for axis in owner.axes:
+            axes += [names.index(axis.name), len(axis.nodes)]
+            nodes += list(axis.nodes)
+    ranges = [number for each in model.parameters for number in (each.least, each.most, each.standard)]
+    return [np.float32(ranges), np.int32(axes), np.float32(nodes)]
 
 
 def _address(array: np.ndarray) -> ctypes.c_void_p:
@@ -106,15 +120,24 @@ def scene(model) -> Scene:
 # ---- records
 
 
-def random_records(n: int, lobes: int, seed: int = 1) -> np.ndarray:
-    """Viewer inclinations, offsets, numbers and directions uniform over their ranges."""
+def random_records(n: int, model, seed: int = 1) -> np.ndarray:
+    """Viewer inclinations, offsets, numbers, directions and parameters uniform over their ranges."""
     random = np.random.default_rng(seed)
     records = random.random((n, INPUTS), np.float32)
     records[:, [THETA_R, THETA_I]] = (records[:, [THETA_R, THETA_I]] - 0.5) * np.float32(np.pi)
     records[:, [PHI_R, PHI_I]] = (records[:, [PHI_R, PHI_I]] - 0.5) * np.float32(2 * np.pi)
     records[:, OFFSET] = 2 * records[:, OFFSET] - 1
-    records[:, LOBE] = np.floor(records[:, LOBE] * lobes)
+    records[:, LOBE] = np.floor(records[:, LOBE] * len(model.lobes))
+    for k, each in enumerate(model.parameters, FIRST_PARAMETER):
+        records[:, k] = each.least + records[:, k] * (each.most - each.least)
     return records
+
+
+def nodes_of(model, name: str) -> np.ndarray:
+    """Every node that the model has along a parameter."""
+    owners = [model.mixture, *(t for lobe in model.lobes for t in (lobe.theta, lobe.phi) if t)]
+    axes = [axis.nodes for owner in owners for axis in owner.axes if axis.name == name]
+    return np.unique(np.concatenate([np.zeros(1), *axes]))
 
 
 def around(values) -> np.ndarray:
@@ -145,7 +168,7 @@ HARD_U = _hard(
 
 def hard_records(model, seed: int = 2) -> np.ndarray:
     """Every pair of hard values of two inputs; directions on texels and beside them; numbers on knots;
-    theta_r and offsets on nodes; lobes that there are not."""
+    theta_r, offsets and parameters on nodes; lobes that there are not."""
     random = np.random.default_rng(seed)
     lobes = len(model.lobes)
     hard = {
@@ -161,7 +184,7 @@ def hard_records(model, seed: int = 2) -> np.ndarray:
     blocks = []
 
     def add(columns: list[int], values: np.ndarray) -> None:
-        block = random_records(len(values), lobes, int(random.integers(1 << 30)))
+        block = random_records(len(values), model, int(random.integers(1 << 30)))
         block[:, columns] = values
         blocks.append(block)
 
@@ -177,6 +200,14 @@ def hard_records(model, seed: int = 2) -> np.ndarray:
         around(np.concatenate([model.mixture.offset, -model.mixture.offset])),
     )
     add([THETA_R, OFFSET], np.stack(np.meshgrid(*nodes), -1).reshape(-1, 2))
+    parameters = {
+        k: _hard(nodes_of(model, each.name), [each.least - 1, each.most + 1])
+        for k, each in enumerate(model.parameters, FIRST_PARAMETER)
+    }
+    for a, b in itertools.combinations([*parameters, THETA_R, OFFSET, U_THETA], 2):
+        if a in parameters:
+            pairs = np.meshgrid(parameters[a], parameters[b] if b in parameters else hard[b])
+            add([a, b], np.stack(pairs, -1).reshape(-1, 2))
     return np.concatenate(blocks).astype(np.float32)
 
 
@@ -225,7 +256,7 @@ class Agreement:
 
 def agreement(want_of: Reference, records: np.ndarray, got: np.ndarray) -> Agreement:
     """Compares a shader's results with C's; asserts what holds exactly: finite, in range, 0 where unknown."""
-    assert_rules(want_of.lobes, records, got)
+    assert_rules(want_of.model, records, got)
     want = closest(want_of, records, got)
     angles = [at + k for at in SAMPLES.values() for k in (0, 1)]
     densities = [at + k for at in SAMPLES.values() for k in (2, 3)] + list(DENSITIES.values())
@@ -279,29 +310,31 @@ def take_nearer(
     want[np.ix_(rows, columns)] = other[np.ix_(rows, columns)]
 
 
-def assert_rules(lobes: int, records: np.ndarray, got: np.ndarray) -> None:
+def assert_rules(model, records: np.ndarray, got: np.ndarray) -> None:
     """The rules of hairlut.h that need no reference."""
     finite = np.isfinite(got[:, [k for k in range(OUTPUTS) if k != COSINE]]).all(axis=1)
     assert finite.all(), records[~finite][:3]
     for kind, at in SAMPLES.items():
         angle, phi, pdf, solid = got[:, at : at + 4].T
-        unknown = is_unknown(lobes, records, kind, SAMPLES)
+        unknown = is_unknown(model, records, kind, SAMPLES)
         assert (np.abs(angle) <= np.float32(np.pi / 2)).all()
         assert ((phi >= -np.float32(np.pi)) & (phi < np.float32(np.pi))).all()
         assert (pdf[unknown] == 0).all()
         assert (solid[unknown] == 0).all()
         assert (pdf[~unknown] > 0).all(), records[~unknown][pdf[~unknown] <= 0][:3]
     for kind, at in DENSITIES.items():
-        assert (got[is_unknown(lobes, records, kind, DENSITIES), at] == 0).all()
+        assert (got[is_unknown(model, records, kind, DENSITIES), at] == 0).all()
     assert ((got[:, NUMBERS] >= 0) & (got[:, NUMBERS] <= 1)).all()
 
 
-def is_unknown(lobes: int, records: np.ndarray, kind: str, what: dict[str, int]) -> np.ndarray:
+def is_unknown(model, records: np.ndarray, kind: str, what: dict[str, int]) -> np.ndarray:
     """Records whose density must be 0: NaN among the function's inputs, an infinite azimuth or share, no
     lobe."""
+    lobes = len(model.lobes)
     used = [THETA_R, PHI_R, U_THETA, U_PHI] if what is SAMPLES else [THETA_R, PHI_R, THETA_I, PHI_I]
     if kind != "lobe":
         used += [OFFSET, U_LOBE] if what is SAMPLES else [OFFSET]
+        used += range(FIRST_PARAMETER, FIRST_PARAMETER + len(model.parameters))
     azimuths = [PHI_R] if what is SAMPLES else [PHI_R, PHI_I]
     unknown = np.isnan(records[:, used]).any(axis=1) | ~np.isfinite(records[:, azimuths]).all(axis=1)
     if kind == "lobe":

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the shipped shaders on software drivers: one function a back end, with the same records in and out.
 
-A record holds theta_r, phi_r, offset, lobe; share, u_lobe, u_theta, u_phi; theta_i, phi_i, 0, 0. A result
-holds the samples (theta_i, phi_i, pdf_angle, pdf_solid_angle) of the lobe, of the hair, and of the hair with
-shares of the record's own; the three densities of (theta_i, phi_i) and 1 / cos(theta_i); the lobe's two
-inverted numbers, 0, 0.
+A record holds theta_r, phi_r, offset, lobe; share, u_lobe, u_theta, u_phi; theta_i, phi_i and
+the first six parameters. A result holds the samples (theta_i, phi_i, pdf_angle, pdf_solid_angle) of the lobe,
+whose parameters have their standard values, of the hair, and of the hair with shares of the record's own; the
+three densities of (theta_i, phi_i) and 1 / cos(theta_i); the lobe's two inverted numbers, 0, 0.
 """
 
 import atexit
@@ -26,7 +26,7 @@ import pytest
 
 HERE = Path(__file__).parent
 SHADERS = HERE.parents[1] / "runtime" / "shaders"
-INPUTS, OUTPUTS = 12, 20
+INPUTS, OUTPUTS = 16, 20
 WIDTH = 1024  # of the texture that a stream is
 CHROMIUM_FLAGS = (
     "--headless",

@@ -29,8 +29,8 @@ extern "C" void evaluate(const float *stream, int first, size_t n, const float *
 {
     const hairlut_float4 *texels = reinterpret_cast<const hairlut_float4 *>(stream);
     const hairlut_float4 *record = reinterpret_cast<const hairlut_float4 *>(in);
-    for (size_t k = 0; k < n; ++k, record += 3, out += 20) {
-        const test_result r = test_record(hairlut_model_at(texels, first), record[0], record[1], record[2]);
+    for (size_t k = 0; k < n; ++k, record += 4, out += 20) {
+        const test_result r = test_record(hairlut_model_at(texels, first), record[0], record[1], record[2], record[3]);
         put(out, r.lobe);
         put(out + 4, r.hair);
         put(out + 8, r.given);
@@ -45,10 +45,14 @@ extern "C" void evaluate(const float *stream, int first, size_t n, const float *
 }
 
 /* Fetches, without those of the head, of: a lobe's sample, a lobe's density, the mixture, the whole hair's sample and density with
- * a mixture that is there. */
+ * a mixture that is there. Parameters lie between nodes. */
 extern "C" void count(const float *stream, int first, long *counts)
 {
-    const hairlut_model hair = hairlut_model_at(reinterpret_cast<const hairlut_float4 *>(stream), first);
+    hairlut_model hair = hairlut_model_at(reinterpret_cast<const hairlut_float4 *>(stream), first);
+    for (int p = 0; p < hair.parameter_count; ++p) {
+        const hairlut_float4 range = HAIRLUT_HEADER(hair.source, hair.ranges + p);
+        hair.parameters.value[p] = range.x + 0.37f * (range.y - range.x);
+    }
     fetches = 0;
     (void)hairlut_sample_lobe(hair, 0, 0.3f, 0.1f, 0.2f, 0.6f);
     counts[0] = fetches;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 precision highp float;
 precision highp int;
-uniform highp sampler2D records; // RGBA32F: three texels a record
+uniform highp sampler2D records; // RGBA32F: four texels a record
 uniform highp sampler2D hairs;
 uniform int first;
 out vec4 lobe;
@@ -27,8 +27,8 @@ vec4 record(int k)
 
 void main()
 {
-    int k = 3 * gl_VertexID;
-    test_result r = test_record(hairlut_model_at(0, first), record(k), record(k + 1), record(k + 2));
+    int k = 4 * gl_VertexID;
+    test_result r = test_record(hairlut_model_at(0, first), record(k), record(k + 1), record(k + 2), record(k + 3));
     lobe = packed_sample(r.lobe);
     hair = packed_sample(r.hair);
     given = packed_sample(r.given);

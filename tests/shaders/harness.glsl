@@ -20,7 +20,8 @@ void main()
     int k = int(gl_GlobalInvocationID.x);
     if (k >= count)
         return;
-    test_result r = test_record(hairlut_model_at(0, first), inputs[3 * k], inputs[3 * k + 1], inputs[3 * k + 2]);
+    int n = 4 * k;
+    test_result r = test_record(hairlut_model_at(0, first), inputs[n], inputs[n + 1], inputs[n + 2], inputs[n + 3]);
     outputs[5 * k] = packed_sample(r.lobe);
     outputs[5 * k + 1] = packed_sample(r.hair);
     outputs[5 * k + 2] = packed_sample(r.given);

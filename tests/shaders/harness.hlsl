@@ -18,7 +18,8 @@ void main(uint3 id : SV_DispatchThreadID)
     int k = int(id.x);
     if (k >= place.y)
         return;
-    test_result r = test_record(hairlut_model_at(0, place.x), inputs[3 * k], inputs[3 * k + 1], inputs[3 * k + 2]);
+    int n = 4 * k;
+    test_result r = test_record(hairlut_model_at(0, place.x), inputs[n], inputs[n + 1], inputs[n + 2], inputs[n + 3]);
     outputs[5 * k] = packed_sample(r.lobe);
     outputs[5 * k + 1] = packed_sample(r.hair);
     outputs[5 * k + 2] = packed_sample(r.given);

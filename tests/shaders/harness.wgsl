@@ -24,7 +24,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (k >= place.y) {
         return;
     }
-    let r = test_record(hairlut_model_at(0, place.x), inputs[3 * k], inputs[3 * k + 1], inputs[3 * k + 2]);
+    let n = 4 * k;
+    let r = test_record(hairlut_model_at(0, place.x), inputs[n], inputs[n + 1], inputs[n + 2], inputs[n + 3]);
     outputs[5 * k] = packed_sample(r.lobe);
     outputs[5 * k + 1] = packed_sample(r.hair);
     outputs[5 * k + 2] = packed_sample(r.given);

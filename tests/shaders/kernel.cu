@@ -9,5 +9,6 @@ using namespace hairlut_gpu;
 
 __global__ void kernel(const float4 *hairs, int first, const float4 *inputs, test_result *outputs, int k)
 {
-    outputs[k] = test_record(hairlut_model_at(hairs, first), inputs[3 * k], inputs[3 * k + 1], inputs[3 * k + 2]);
+    const float4 *in = inputs + 4 * k;
+    outputs[k] = test_record(hairlut_model_at(hairs, first), in[0], in[1], in[2], in[3]);
 }

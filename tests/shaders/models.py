@@ -2,12 +2,16 @@
 """Models that the shaders are compared on: analytic lobes tabulated at many shapes, and mixtures of them."""
 
 import functools
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from hairlut.axes import Axis, Parameter
 from hairlut.mixture import Mixture, constant
+from hairlut.model import BakedLobe, BakedModel
 from hairlut.slopes import derived
+from hairlut.table import Table
 from hairlut.warp import Warp
 
 HALF_PI = np.pi / 2
@@ -23,6 +27,7 @@ class Sheet:
     domain: tuple[float, float]
     theta_r_range: tuple[float, float]
     azimuth: str = "none"
+    axes: tuple = ()
 
     @property
     def height(self) -> int:
@@ -45,6 +50,7 @@ class SheetModel:
     name: str
     lobes: tuple[SheetLobe, ...]
     mixture: Mixture = field(repr=False)
+    parameters: tuple = ()
 
 
 def logistic(width: int, height: int, warp: str, domain, mean, scale: float, azimuth: str = "none") -> Sheet:
@@ -124,4 +130,82 @@ def single() -> SheetModel:
     return SheetModel("single", (lobe,), constant(("only",)))
 
 
-MODELS = {"near field": near_field, "sixteen lobes": sixteen, "one lobe": single}
+PARAMETERS = (
+    Parameter("beta_m", 0.02, 0.6, 0.2),
+    Parameter("beta_n", 0.1, 0.9, 0.5),
+    Parameter("absorption", 0.0, 50.0, 3.0),
+    Parameter("tilt", -0.2, 0.3, 0.0),
+    Parameter("unused", -1e20, 1e20, 7.0),
+    Parameter("weight", -3.0, -1.0, -3.0),
+)
+NODES = {
+    "beta_m": [0.02, 0.05, 0.06, 0.2, 0.45, 0.6],
+    "beta_n": [0.1, 0.2, 0.5, 0.9],
+    "absorption": [0.0, 1.0, 50.0],
+    "tilt": [-0.2, 0.3],
+    "weight": [-3.0, -2.9, -2.0, -1.5, -1.0],
+}
+SPREAD = {"beta_m": 0.3, "beta_n": 0.5, "absorption": 0.002, "weight": 0.1}
+
+
+def varying(name: str, names: tuple[str, ...], make) -> Table:
+    """A table of model "strands" that depends on these parameters: make(scale, tilt) at each node."""
+    axes = tuple(Axis(each, np.array(NODES[each])) for each in names)
+    sheets = []
+    for node in itertools.product(*(axis.nodes for axis in axes)):
+        values = dict(zip(names, node, strict=True))
+        tilt = values.pop("tilt", 0.0)
+        sheets.append(make(0.02 + sum(SPREAD[each] * abs(value) for each, value in values.items()), tilt))
+    first = sheets[0]
+    return Table(
+        model="strands",
+        name=name,
+        angle="theta_i" if first.azimuth == "none" else "phi",
+        azimuth=first.azimuth,
+        domain=first.domain,
+        theta_r_range=first.theta_r_range,
+        parameters="",
+        warp=first.warp,
+        texels=np.concatenate([sheet.texels for sheet in sheets]),
+        slopes=np.concatenate([sheet.slopes for sheet in sheets]),
+        log_mass=np.zeros(sum(sheet.height for sheet in sheets)),
+        axes=axes,
+    )
+
+
+@functools.cache
+def strands() -> BakedModel:
+    """Lobes that depend on none, one, two and four of six parameters, on one of which nothing does; a mixture
+    over three, whose turns pass pi."""
+    one = varying("one_theta", ("beta_m",), lambda scale, _: theta(30, 8, OCTAVES, scale=scale))
+    two = varying("two_theta", ("tilt", "beta_m"), lambda scale, tilt: theta(17, 9, OCTAVES, tilt, scale))
+    none = varying("none_theta", (), lambda *_: theta(9, 5, OCTAVES))
+    around = varying(
+        "around_phi", ("beta_n",), lambda scale, _: phi(33, 6, "uniform", "difference", 3 * scale)
+    )
+    four = ("absorption", "weight", "tilt", "beta_n")
+    four_axes = varying("four_phi", four, lambda scale, _: phi(12, 3, OCTAVES, "sum", scale))
+    lobes = (
+        BakedLobe("r", one, around),
+        BakedLobe("tt", two, four_axes),
+        BakedLobe("trt", none, around),
+        BakedLobe("rest", one, None),
+    )
+    axes = tuple(Axis(name, np.array(NODES[name])) for name in ("beta_n", "absorption", "weight"))
+    random = np.random.default_rng(6)
+    shape = len(lobes), *(len(axis.nodes) for axis in axes), 4, 3
+    share = random.random(shape) * random.uniform(0.1, 9, shape[1:])
+    share[1, 2] = 0
+    mixture = Mixture(
+        tuple(lobe.name for lobe in lobes),
+        np.array([-1.2, 0.1, 0.5, 1.4]),
+        np.array([0.0, 0.4, 1.0]),
+        share,
+        random.uniform(-7, 7, shape),
+        True,
+        axes,
+    )
+    return BakedModel("strands", lobes, mixture, {}, PARAMETERS)
+
+
+MODELS = {"near field": near_field, "sixteen lobes": sixteen, "one lobe": single, "strands": strands}

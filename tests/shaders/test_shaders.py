@@ -3,6 +3,7 @@
 
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from shaders import backends
 from shaders.agreement import (
     DENSITIES,
+    FIRST_PARAMETER,
     NUMBERS,
     ROOT,
     SAMPLES,
@@ -21,7 +23,7 @@ from shaders.agreement import (
     scene,
 )
 from shaders.backends import BACKENDS, HERE, SHADERS
-from shaders.models import MODELS, OCTAVES, SheetLobe, SheetModel, near_field, theta
+from shaders.models import MODELS, OCTAVES, SheetLobe, SheetModel, near_field, strands, theta
 
 from hairlut import exr
 from hairlut.mixture import constant
@@ -38,7 +40,7 @@ def known(name: str) -> tuple:
     if name not in _known:
         model = MODELS[name]() if name in MODELS else exr.read_model(ROOT / "luts" / name)
         every = 1 if name in MODELS else 8
-        records = [hard_records(model)[::every], random_records(RANDOM, len(model.lobes))]
+        records = [hard_records(model)[::every], random_records(RANDOM, model)]
         _known[name] = model, Reference(model), scene(model), np.concatenate(records)
     return _known[name]
 
@@ -50,6 +52,33 @@ def test_agrees_with_c_on_random_and_hard_inputs(backend: str, name: str):
     result = agreement(reference, records, BACKENDS[backend](where, records))
     print(backend, name, result)
     assert result.holds(), result
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_model_at_fixed_parameters_is_the_blend_of_its_textures(seed: int):
+    """Lobes too. The parameters are those of the model: hairlut_model_at sets the standard values."""
+    model, random = strands(), np.random.default_rng(seed)
+    at = {each.name: float(np.float32(random.uniform(each.least, each.most))) for each in model.parameters}
+    moved = replace(model, parameters=tuple(replace(p, standard=at[p.name]) for p in model.parameters))
+    records = random_records(RANDOM, moved)
+    records[:, FIRST_PARAMETER:] = list(at.values())
+    result = agreement(Reference(model.at(at)), records, backends.run_cxx(scene(moved), records))
+    assert result.holds(), result
+
+
+def test_parameters_change_what_is_drawn():
+    """Else the tests above would compare nothing."""
+    _, _, where, records = known("strands")
+    other = records[-2000:].copy()
+    other[:, FIRST_PARAMETER:] = np.roll(other[:, FIRST_PARAMETER:], 1, axis=0)
+    here, there = (backends.run_cxx(where, part) for part in (records[-2000:], other))
+    for column in (SAMPLES["hair"], SAMPLES["hair"] + 1, DENSITIES["hair"], DENSITIES["given"]):
+        assert (np.abs(here - there)[:, column] > 1e-2).mean() > 0.3
+
+
+def test_a_shader_that_knows_no_parameters_draws_nothing():
+    """It takes the negative number of lobes for none."""
+    assert stream(strands())[0, 0] == -len(strands().lobes)
 
 
 @pytest.mark.parametrize("language", ["glsl", "hlsl", "cuh", "wgsl"])
@@ -76,10 +105,13 @@ MUTANTS = {
     "difference taken for sum": ("? relative - r : relative + r", "? relative + r : relative - r"),
     "NaN not told": ("return (hairlut_bits(x) & 0x7fffffffu) > 0x7f800000u", "return hairlut_bits(x) == 0u"),
     "cosine of the float pi/2": ("z * w * series - 4.37113883e-8f", "z * w * series"),
-    "places from the start of the stream": ("axis.first = model + int(shape.x)", "axis.first = int(shape.x)"),
+    "places from the start of the stream": (
+        "axis.first = model.first + int(shape.x)",
+        "axis.first = int(shape.x)",
+    ),
     "shares not divided": ("hairlut_share(mixture, k) / total", "hairlut_share(mixture, k)"),
     "a lobe of share 0 drawn": ("if (share > 0.0f && below <= wanted)", "if (below <= wanted)"),
-    "shares of the lower row": ("hairlut_blend(share.x, share.y, row.t)", "share.x"),
+    "shares of the lower row": ("hairlut_blend(pair.share.x, pair.share.y, row.t)", "pair.share.x"),
     "linear in the offset": ("hairlut_asin(side * h)", "1.57079637f * side * h"),
     "longer arc": (
         "turn_low + column.t * hairlut_wrap(turn_high - turn_low, -hairlut_pi)",
@@ -92,6 +124,43 @@ MUTANTS = {
         "hairlut_relative_azimuth(lobe.phi, phi_r, phi_i) - turn",
     ),
     "density not turned": ("phi_r, phi_i) - turn, 0.0f)", "phi_r, phi_i) - 0.0f * turn, 0.0f)"),
+}
+STRAND_MUTANTS = {
+    "weights of the opposite corner": (
+        "(c & 2) != 0 ? corners.t.y : 1.0f - corners.t.y",
+        "(c & 2) != 0 ? 1.0f - corners.t.y : corners.t.y",
+    ),
+    "steps of one axis": ("steps += (c & 2) != 0 ? corners.step.y : 0.0f;", ""),
+    "one node too few": (
+        "corners.first * int(axis.y) + place.gap",
+        "corners.first * (int(axis.y) - 1) + place.gap",
+    ),
+    "parameters by the axis' number": (
+        "hairlut_parameter(model, int(axis.w))",
+        "hairlut_parameter(model, a)",
+    ),
+    "corners of the azimuth for theta_i": (
+        "hairlut_axis_at(model, at, hairlut_corners_of(model, 1 + 2 * k))",
+        "hairlut_axis_at(model, at, hairlut_corners_of(model, 2 + 2 * k))",
+    ),
+    "corners of the mixture for the azimuth": (
+        "hairlut_axis_at(model, at + 3, hairlut_corners_of(model, 2 + 2 * k))",
+        "hairlut_axis_at(model, at + 3, hairlut_corners_of(model, 0))",
+    ),
+    "keys of the lowest corner": (
+        "HAIRLUT_FETCH(source, first + corner.at + node)",
+        "HAIRLUT_FETCH(source, first + corners.first + node)",
+    ),
+    "turns along the longer arc": (
+        "arc.x = hairlut_wrap(turn.x - lowest.x, -hairlut_pi)",
+        "arc.x = turn.x - lowest.x",
+    ),
+    "standard values": ("strand.parameters = parameters;", "(void)parameters;"),
+    "NaN among parameters": ("&& hairlut_parameters_known(model);", ";"),
+    "not clamped": (
+        "place.t = clamp((x - node.x) * node.y, 0.0f, 1.0f);",
+        "place.t = (x - node.x) * node.y;",
+    ),
 }
 
 
@@ -114,10 +183,22 @@ def test_comparison_rejects_a_body_with_one_wrong_step(mutant: str, tmp_path: Pa
     assert not result.holds(), result
 
 
+@pytest.mark.parametrize("mutant", STRAND_MUTANTS)
+def test_comparison_rejects_one_wrong_step_with_parameters(mutant: str, tmp_path: Path):
+    _, reference, where, records = known("strands")
+    records = records[:: len(records) // 20_000]
+    got = backends.run_cxx(where, records, mutated(tmp_path, *STRAND_MUTANTS[mutant]))
+    try:
+        result = agreement(reference, records, got)
+    except AssertionError:
+        return
+    assert not result.holds(), result
+
+
 def test_comparison_rejects_one_wrong_density_and_one_wrong_number():
     """The tolerances themselves: C's own results, one value of one record moved."""
     model = near_field()
-    reference, records = Reference(model), random_records(1000, len(model.lobes))
+    reference, records = Reference(model), random_records(1000, model)
     got = reference(records)
     assert agreement(reference, records, got) == Agreement(1000, 0.0, pytest.approx(0, abs=2e-7), 0.0, 0)
     for column in (SAMPLES["lobe"] + 2, SAMPLES["hair"] + 3, DENSITIES["given"]):
@@ -142,8 +223,9 @@ def test_fetches_are_those_of_the_readme():
     assert counts["sample_hair"] == 2 * (column + cells) + pdf[44] + pdf[33] + pdf[44]
     assert counts["pdf_hair"] == pdf[44] + pdf[33] + pdf[24] + pdf[28] + pdf[44]
     readme = (SHADERS / "README.md").read_text()
-    for name in ("fitted", "brown"):
-        counts = backends.count_fetches(scene(exr.read_model(ROOT / "luts" / name)))
+    models = {name: exr.read_model(ROOT / "luts" / name) for name in ("fitted", "brown")}
+    for name, model in (models | {"strands": strands()}).items():
+        counts = backends.count_fetches(scene(model))
         numbers = " | ".join(str(count) for count in counts.values())
         assert f"| `{name}` | {numbers} |" in readme, "change the table of runtime/shaders/README.md"
 

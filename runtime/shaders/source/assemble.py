@@ -59,14 +59,14 @@ def _struct(match: re.Match) -> str:
 
 def _function(match: re.Match) -> str:
     kind, name, parameters, text = match.groups()
-    typed = (f"{variable}: {_type(of)}" for of, variable in (p.split() for p in parameters.split(",")))
+    typed = (f"{variable}: {_type(of)}" for of, variable in re.findall(r"(\w+) (\w+)", parameters))
     return f"{_broken(f'fn {name}(', list(typed), f') -> {_type(kind)} {{')}\n{_statements(text)}}}"
 
 
 def _broken(start: str, parts: list[str], end: str, width: int = 127) -> str:
     """A parameter list, in lines of at most that width."""
     lines = [start]
-    for k, part in enumerate(parts):
+    for k, part in enumerate(parts or [""]):
         part += ", " if k + 1 < len(parts) else end
         if len(lines[-1] + part.rstrip()) > width:
             lines[-1] = lines[-1].rstrip()

@@ -24,6 +24,9 @@
 #ifndef HAIRLUT_LOBE_LIMIT
 #define HAIRLUT_LOBE_LIMIT 16
 #endif
+#ifndef HAIRLUT_PARAMETER_LIMIT
+#define HAIRLUT_PARAMETER_LIMIT 8
+#endif
 #ifndef HAIRLUT_FETCH /* with HAIRLUT_SOURCE: what hairlut_model_at takes, and how texel i is read of it */
 #define HAIRLUT_SOURCE const hairlut_float4 *
 #define HAIRLUT_FETCH(source, i) ((source)[i])
@@ -45,6 +48,7 @@ struct hairlut_float4 {
 #endif
 
 constexpr int hairlut_max_lobes = HAIRLUT_LOBE_LIMIT;
+constexpr int hairlut_max_parameters = HAIRLUT_PARAMETER_LIMIT;
 
 HAIRLUT_FN float abs(float x)
 {

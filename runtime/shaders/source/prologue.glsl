@@ -23,6 +23,9 @@ precision highp int;
 #ifndef HAIRLUT_LOBE_LIMIT
 #define HAIRLUT_LOBE_LIMIT 16
 #endif
+#ifndef HAIRLUT_PARAMETER_LIMIT
+#define HAIRLUT_PARAMETER_LIMIT 8
+#endif
 #ifndef HAIRLUT_HEADER
 #define HAIRLUT_HEADER(source, i) HAIRLUT_FETCH(source, i)
 #endif
@@ -34,3 +37,4 @@ precision highp int;
 #define hairlut_from_bits uintBitsToFloat
 
 HAIRLUT_CONST int hairlut_max_lobes = HAIRLUT_LOBE_LIMIT;
+HAIRLUT_CONST int hairlut_max_parameters = HAIRLUT_PARAMETER_LIMIT;

@@ -17,6 +17,7 @@
  * README.md has the rest: bindings, fetches, limits. */
 
 const hairlut_max_lobes: i32 = 16;
+const hairlut_max_parameters: i32 = 8;
 
 fn hairlut_bits(x: f32) -> u32 {
     return bitcast<u32>(x);

@@ -5,6 +5,7 @@ import base64
 import json
 import zlib
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -56,32 +57,37 @@ def model_data(shipped: BakedModel, sizes: Sequence[int]) -> dict:
         {"name": lobe.name, "tables": [names.index(table.name) for table in lobe.tables]}
         for lobe in shipped.lobes
     ]
+    data = {"lobes": lobes, "parameters": [asdict(parameter) for parameter in shipped.parameters]}
     model = MODELS.get(shipped.name)
     if model is None:
-        return {"lobes": lobes, "sizes": {"shipped": _size(shipped, {})}}
+        return data | {"sizes": {"shipped": _size(shipped, {})}}
     exact = {lobe.name: lobe for lobe in model.lobes}
     chosen = {"shipped": _size(shipped, {t.name: measure(t, exact[t.name]) for t in shipped.tables})}
     for size in sizes:
         choices = {name: table_of_size(exact[name], size, size) for name in names}
         baked = assemble(model, {name: choice.table for name, choice in choices.items()})
         chosen[str(size)] = _size(baked, {name: choice.errors for name, choice in choices.items()})
-    return {"lobes": lobes, "sizes": chosen}
+    return data | {"sizes": chosen}
 
 
 def _size(model: BakedModel, errors: Mapping[str, Errors]) -> dict:
+    names = [parameter.name for parameter in model.parameters]
     return {
         "stream": _packed(stream(model)),
-        "tables": [_table(table, errors.get(table.name)) for table in model.tables],
+        "tables": [_table(table, names, errors.get(table.name)) for table in model.tables],
     }
 
 
-def _table(table: Table, errors: Errors | None) -> dict:
+def _table(table: Table, parameters: list[str], errors: Errors | None) -> dict:
     return {
         "name": table.name,
         "width": table.width,
         "height": table.height,
         "theta_r": table.theta_r_range,
         "domain": table.domain,
+        "axes": [
+            {"parameter": parameters.index(axis.name), "nodes": axis.nodes.tolist()} for axis in table.axes
+        ],
         "texels": _packed(table.texels),
         "variance": errors and [float(f"{x:.3g}") for x in errors.variance],
         "weight": errors and [float(f"{x:.5g}") for x in errors.weight],

@@ -14,6 +14,7 @@ from PIL import Image
 from scipy import stats
 from shaders.agreement import ROOT, Reference
 from shaders.backends import INPUTS, SHADERS, chromium
+from shaders.models import strands
 
 from hairlut import exr, size, view
 from hairlut.cli import main
@@ -37,6 +38,8 @@ return {
     sliders: ["theta_r", "phi_r", "offset", "u_theta", "u_phi", "u_lobe"].map(
         id => parseFloat(text(id + "_text"))),
     variance: [...document.querySelectorAll("[id^=variance_]")].map(e => Number(e.textContent)),
+    parameters: [...document.querySelectorAll("#parameter_sliders output")].map(e => Number(
+        e.textContent.replaceAll("\u2212", "-"))),
     rows: [...document.querySelectorAll("[id^=row_]")].map(e => parseFloat(e.textContent.slice(4))),
     shares: [...document.querySelectorAll("#share_table td[id^=share_]")].map(e => Number(e.textContent)),
     turns: [...document.querySelectorAll("[id^=turn_]")].map(
@@ -90,8 +93,9 @@ class Page:
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("view") / "explorer.html"
     exr.write_model(path.parent / "many", many_lobes())
+    exr.write_model(path.parent / "strands", strands())
     models = [LUTS / name for name in ("fitted", "printed", "brown")]
-    return view.write_explorer([*models, path.parent / "many"], path, SIZES)
+    return view.write_explorer([*models, path.parent / "many", path.parent / "strands"], path, SIZES)
 
 
 def many_lobes() -> BakedModel:
@@ -171,6 +175,37 @@ def test_numbers_on_the_page_are_those_of_c(page, state):
             assert np.cos(np.radians(told) - angle) == pytest.approx(1, abs=1e-6)
 
 
+AT = {"beta_m": 0.41, "beta_n": 0.15, "absorption": 9.5, "tilt": -0.07, "unused": 1e20, "weight": -1.3}
+
+
+@pytest.mark.parametrize("lobe", ["hair", "tt"])
+@pytest.mark.parametrize("at", [AT, {}], ids=["moved", "standard"])
+def test_a_slider_moves_each_parameter(page, lobe, at):
+    page.choose("model", "fitted")  # and back: the sliders are made anew
+    page.choose("model", "strands")
+    page.choose("lobe", lobe)
+    model = strands()
+    values = {each.name: at.get(each.name, each.standard) for each in model.parameters}
+    shown = page.slide(theta_r=20, phi_r=40, offset=-0.3, u_theta=0.2, u_phi=0.7, u_lobe=0.4)
+    shown = page.slide(**{f"parameter_{k}": value for k, value in enumerate(values.values())})
+    assert shown["parameters"] == pytest.approx(list(values.values()), rel=1e-3)
+    record = np.zeros(INPUTS)
+    record[:8] = [*np.radians([20, 40]), -0.3, 1, 0.5, 0.4, 0.2, 0.7]
+    at = 4 if lobe == "hair" else 0
+    want = Reference(model.at(values))(np.float32([record]))[0, at : at + 4]
+    assert shown["one"][0] == pytest.approx(want[0], abs=2e-6)
+    assert np.cos(shown["one"][1] - want[1]) == pytest.approx(1, abs=1e-10)
+    assert shown["one"][2:] == pytest.approx(want[2:].tolist(), rel=1e-4)
+    share, _, _ = model.mixture.parameters_at(values).at(np.radians(20), -0.3)
+    assert shown["shares"] == pytest.approx(share.tolist(), abs=1e-4)
+
+
+def test_a_model_without_parameters_shows_no_sliders_for_them(page):
+    page.choose("model", "brown")
+    assert page.read()["parameters"] == []
+    assert not page.driver.find_element("id", "parameters").is_displayed()
+
+
 @pytest.mark.parametrize("state", STATES[:4], ids=lambda s: "-".join(map(str, s[:3])))
 def test_error_on_the_page_is_the_measured_one(page, state):
     model, name, _, theta_r, *_ = state
@@ -187,7 +222,7 @@ def test_error_on_the_page_is_the_measured_one(page, state):
 
 
 FITS = [("fitted", "direct", 0), ("fitted", "multiple", 0), ("fitted", "hair", 0)]
-FITS += [("brown", "hair", 0.6), ("brown", "hair", -0.6), ("many", "hair", -0.3)]
+FITS += [("brown", "hair", 0.6), ("brown", "hair", -0.6), ("many", "hair", -0.3), ("strands", "hair", 0.3)]
 
 
 @pytest.mark.parametrize(("model", "lobe", "offset"), FITS)
@@ -294,7 +329,7 @@ def test_page_contains_the_shipped_shader_and_tables(file):
     text = file.read_text()
     assert (SHADERS / "hairlut.glsl").read_text() in text
     data = data_of(text)
-    assert set(data["models"]) == {"fitted", "printed", "brown", "many"}
+    assert set(data["models"]) == {"fitted", "printed", "brown", "many", "strands"}
     assert set(data["models"]["brown"]["sizes"]) == {"shipped"}
     assert set(data["models"]["fitted"]["sizes"]) == {"shipped", *map(str, SIZES)}
 

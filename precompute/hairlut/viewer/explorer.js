@@ -12,12 +12,14 @@ const SHOWN = 3000;           // points on the sphere
 const RADIUS = 0.86;
 const THETA_BINS = 45, PHI_BINS = 48, CURVE = 361;
 const MOST = 4000000;         // samples at which "keep drawing" stops
+const MOST_PARAMETERS = 8;    // hairlut_max_parameters of the shader
 
 const state = {
     model: Object.keys(data.models)[0],
     lobe: HAIR, size: "shipped", samples: 10000,
     theta_r: 20, phi_r: 0, offset: 0, u_theta: 0.5, u_phi: 0.5, u_lobe: 0.25, // angles in degrees
     yaw: 1.0, pitch: 0.35, keep: false,
+    parameters: {}, // of each model: the values of its parameters
 };
 
 /* ---- random numbers: a 32-bit generator, the upper 24 bits of each state ------------------------------------- */
@@ -116,12 +118,14 @@ function upload() {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, texels.length / 4096, 0, gl.RGBA, gl.FLOAT, texels);
 }
 
+const values = () => state.parameters[state.model] ??= model().parameters.map(each => each.standard);
 const viewer = () => [state.theta_r * DEGREE, state.phi_r * DEGREE, state.offset];
 
 function use(p) {
     gl.useProgram(p.program);
     gl.uniform1i(p.at("hairs"), 0);
     gl.uniform3fv(p.at("viewer"), viewer());
+    gl.uniform1fv(p.at("parameters"), [...values(), ...Array(MOST_PARAMETERS - values().length).fill(0)]);
     gl.uniform1i(p.at("lobe"), state.lobe === HAIR ? -1 : parts()[0]);
 }
 
@@ -429,16 +433,30 @@ function rowAt(table) {
     return Math.min(Math.max((viewer()[0] - low) / (high - low) * last, 0), last);
 }
 
+/* The node of a table that is nearest to the parameters' values. */
+function nodeAt(table) {
+    return table.axes.reduce((node, { parameter, nodes }) => {
+        const off = nodes.map(x => Math.abs(x - values()[parameter]));
+        return node * nodes.length + off.indexOf(Math.min(...off));
+    }, 0);
+}
+
+/* What a table's picture shows: for one with parameters, the rows of the nearest node. */
+function sizeOf(table) {
+    const names = table.axes.map(({ parameter, nodes }) => `${nodes.length} ${model().parameters[parameter].name}`);
+    const bytes = 8 * table.decoded.length, size = bytes < 1024 ? `${bytes} B` : `${(bytes / 1024).toFixed(1)} KB`;
+    return `${table.width}×${table.height}${names.length ? ` for each of ${names.join(" × ")}` : ""}, ${size}`;
+}
+
 function paintTextures() {
     const section = byId("textures"), shownTables = used();
     section.innerHTML = tables().map((_, k) => `<figure><figcaption></figcaption><canvas id="texture_${k}" role="img"></canvas>`
         + `<p class="note" id="row_${k}"></p></figure>`).join("");
     tables().forEach((table, k) => {
-        const figure = section.children[k], canvas = byId(`texture_${k}`), x = table.decoded, row = rowAt(table);
-        const bytes = 8 * table.width * table.height, [low, high] = table.domain;
+        const figure = section.children[k], canvas = byId(`texture_${k}`), row = rowAt(table), [low, high] = table.domain;
+        const texels = table.width * table.height, x = table.decoded.subarray(nodeAt(table) * texels, (nodeAt(table) + 1) * texels);
         figure.className = shownTables.has(k) ? "" : "unused";
-        figure.querySelector("figcaption").innerHTML = `<b>${table.name}</b><br>${table.width}×${table.height}, `
-            + (bytes < 1024 ? `${bytes} B` : `${(bytes / 1024).toFixed(1)} KB`);
+        figure.querySelector("figcaption").innerHTML = `<b>${table.name}</b><br>${sizeOf(table)}`;
         canvas.setAttribute("aria-label", `Angles of ${table.name}: u to the right, theta_r upwards`);
         const image = new ImageData(table.width, table.height);
         x.forEach((value, at) => {
@@ -572,11 +590,29 @@ function radios(name, values, text) {
         + `${state[name] === v ? " checked" : ""}>${text(v)}</label>`).join("");
 }
 
+/* A slider for each parameter of the model. */
+function parameterSliders() {
+    byId("parameters").hidden = !model().parameters.length;
+    byId("parameter_sliders").innerHTML = model().parameters.map((each, p) =>
+        `<label class="slider"><span>${each.name}</span> <output id="parameter_${p}_text"></output>`
+        + `<input type="range" id="parameter_${p}" min="${each.least}" max="${each.most}" step="any">`
+        + `<span class="note">${each.least} to ${each.most}, standard ${each.standard}</span></label>`).join("");
+    model().parameters.forEach((_, p) => {
+        const slider = byId(`parameter_${p}`);
+        slider.value = values()[p];
+        slider.addEventListener("input", () => {
+            values()[p] = Number(slider.value);
+            changed();
+        });
+    });
+}
+
 /* What a model offers to choose from. */
 function offered() {
     radios("lobe", lobeNames(), v => v);
     const order = (a, b) => (b === "shipped") - (a === "shipped") || a - b;
     radios("size", Object.keys(model().sizes).sort(order), v => v === "shipped" ? v : `${v}²`);
+    parameterSliders();
 }
 
 function controls() {
@@ -651,6 +687,7 @@ function update() {
     if (what !== "turn") {
         for (const [name, text] of Object.entries(SLIDERS))
             byId(`${name}_text`).textContent = text(state[name]).replace("-", "−");
+        values().forEach((value, p) => { byId(`parameter_${p}_text`).textContent = value.toPrecision(4).replace("-", "−"); });
         byId("offset_label").className = byId("u_lobe_label").className = state.lobe === HAIR ? "slider" : "slider off";
         byId("offset").disabled = byId("u_lobe").disabled = state.lobe !== HAIR;
         tellOne();

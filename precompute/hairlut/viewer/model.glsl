@@ -8,9 +8,14 @@ uniform int lobe;              // -1: the whole hair
 #define HAIRLUT_FETCH(source, i) texelFetch(hairs, ivec2((i) & 1023, (i) >> 10), 0)
 //@hairlut
 
+uniform float parameters[hairlut_max_parameters];
+
 hairlut_model hair()
 {
-    return hairlut_model_at(0, 0);
+    hairlut_model model = hairlut_model_at(0, 0);
+    for (int p = 0; p < hairlut_max_parameters; ++p)
+        model.parameters.value[p] = parameters[p];
+    return model;
 }
 
 /* numbers: u_theta, u_phi, u_lobe */

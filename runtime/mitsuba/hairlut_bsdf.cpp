@@ -7,6 +7,11 @@
  *   light_sampling boolean false claims Dirac samples, so that integrators find light by this BSDF's sampling alone, for
  *                          comparison (default true)
  *   (nested)       bsdf    one BSDF without Dirac components that gives the values
+ *   (name)         float or texture   a parameter of the model by its name, such as beta_m, in the model's unit (default its
+ *                          standard value); values beyond its range count as the nearer end
+ *
+ * A texture of a parameter may differ from strand to strand. What it gives should be what the nested BSDF uses; where it is not,
+ * there is more noise, and no bias.
  *
  * Conventions. On a curve the shading frame's t, local +y, is the fibre: sin(theta) = w.y. Azimuths run from the surface
  * normal, local +z, towards local +x. Mitsuba's si.wi is the viewer direction (theta_r, phi_r), its wo the incident one
@@ -17,15 +22,18 @@
  * sign that hairlut.h expects. A viewer behind the surface, which curves do not have, counts as its mirror image in front.
  *
  * Only scalar_rgb is registered: the C library samples one direction a call and is not traced by Dr.Jit. */
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <mitsuba/core/fresolver.h>
 #include <mitsuba/core/properties.h>
 #include <mitsuba/core/string.h>
 #include <mitsuba/core/warp.h>
 #include <mitsuba/render/bsdf.h>
+#include <mitsuba/render/texture.h>
 
 #include <hairlut.h>
 
@@ -74,12 +82,21 @@ std::shared_ptr<const hairlut_model> load_model(const std::string &name)
     return {loaded, hairlut_free};
 }
 
+/// The names of a model's parameters, for an error.
+std::string parameter_names(const hairlut_model *model)
+{
+    std::string names;
+    for (int p = 0; p < hairlut_parameter_count(model); ++p)
+        names += (p ? ", " : "") + std::string(hairlut_parameter_name(model, p));
+    return names.empty() ? "no parameters" : names;
+}
+
 } // namespace
 
 template <typename Float, typename Spectrum> class HairlutBSDF final : public BSDF<Float, Spectrum> {
 public:
     MI_IMPORT_BASE(BSDF, m_flags, m_components)
-    MI_IMPORT_TYPES()
+    MI_IMPORT_TYPES(Texture)
 
     explicit HairlutBSDF(const Properties &props) : Base(props)
     {
@@ -100,11 +117,18 @@ public:
         if (has_flag(m_nested->flags(), BSDFFlags::DeltaReflection) ||
             has_flag(m_nested->flags(), BSDFFlags::DeltaTransmission))
             Throw("hairlut: the nested BSDF has a Dirac component, which no table samples; nest a rough one");
+        for (int p = 0; p < hairlut_parameter_count(m_model.get()); ++p) {
+            float standard = 0.f;
+            hairlut_parameter_range(m_model.get(), p, nullptr, nullptr, &standard);
+            m_strand.push_back(props.get_unbounded_texture<Texture>(hairlut_parameter_name(m_model.get(), p), standard));
+        }
         const bool light_sampling = props.get<bool>("light_sampling", true);
         m_sampled_type = light_sampling ? +BSDFFlags::Glossy : +BSDFFlags::DeltaReflection;
         for (size_t i = 0; i < m_nested->component_count(); ++i)
             m_components.push_back(light_sampling ? m_nested->flags(i) : DIRAC);
         m_flags = light_sampling ? m_nested->flags() : DIRAC;
+        for (const std::string &name : props.unqueried())
+            Throw("hairlut: parameter \"%s\": the model \"%s\" has %s", name, m_name, parameter_names(m_model.get()));
     }
 
     std::pair<BSDFSample3f, Spectrum> sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, Float sample1,
@@ -156,7 +180,12 @@ public:
         return m_nested->eval_diffuse_reflectance(si, active);
     }
 
-    void traverse(TraversalCallback *callback) override { callback->put("nested", m_nested, ParamFlags::NonDifferentiable); }
+    void traverse(TraversalCallback *callback) override
+    {
+        callback->put("nested", m_nested, ParamFlags::NonDifferentiable);
+        for (size_t p = 0; p < m_strand.size(); ++p)
+            callback->put(hairlut_parameter_name(m_model.get(), int(p)), m_strand[p], ParamFlags::NonDifferentiable);
+    }
 
     std::string to_string() const override
     {
@@ -164,9 +193,11 @@ public:
         oss << "HairlutBSDF[" << std::endl
             << "  model = " << m_name << "," << std::endl
             << "  mix = " << m_mix << "," << std::endl
-            << "  uniform = " << m_uniform << "," << std::endl
-            << "  nested = " << string::indent(m_nested) << std::endl
-            << "]";
+            << "  uniform = " << m_uniform << "," << std::endl;
+        for (size_t p = 0; p < m_strand.size(); ++p)
+            oss << "  " << hairlut_parameter_name(m_model.get(), int(p)) << " = " << string::indent(m_strand[p]) << ","
+                << std::endl;
+        oss << "  nested = " << string::indent(m_nested) << std::endl << "]";
         return oss.str();
     }
 
@@ -180,6 +211,17 @@ private:
         Float pdf; // per steradian
     };
 
+    using Strand = std::array<float, HAIRLUT_MAX_PARAMETERS>;
+
+    /// The model's parameters where the ray hits.
+    Strand strand(const SurfaceInteraction3f &si) const
+    {
+        Strand values{};
+        for (size_t p = 0; p < m_strand.size(); ++p)
+            values[p] = m_strand[p]->eval_1(si);
+        return values;
+    }
+
     /// A direction from the tables, or from the whole sphere.
     Proposal propose(const SurfaceInteraction3f &si, Float u_lobe, const Point2f &u) const
     {
@@ -188,8 +230,8 @@ private:
             return {wo, warp::square_to_uniform_sphere_pdf(wo)};
         }
         const Angles r = angles_of(si.wi);
-        const hairlut_sample s =
-            hairlut_sample_hair(m_model.get(), nullptr, r.theta, r.phi, offset_of(si.wi), u_lobe, u.x(), u.y());
+        const hairlut_sample s = hairlut_sample_strand(m_model.get(), strand(si).data(), nullptr, r.theta, r.phi,
+                                                       offset_of(si.wi), u_lobe, u.x(), u.y());
         float wo[3];
         hairlut_direction(&local_frame, s.theta_i, s.phi_i, wo);
         return {{wo[0], wo[1], wo[2]}, s.pdf_solid_angle};
@@ -202,7 +244,8 @@ private:
             return warp::square_to_uniform_sphere_pdf(wo);
         const Angles r = angles_of(si.wi), i = angles_of(wo);
         return hairlut_pdf_to_solid_angle(
-            hairlut_pdf_hair(m_model.get(), nullptr, r.theta, r.phi, offset_of(si.wi), i.theta, i.phi), i.theta);
+            hairlut_pdf_strand(m_model.get(), strand(si).data(), nullptr, r.theta, r.phi, offset_of(si.wi), i.theta, i.phi),
+            i.theta);
     }
 
     /// The nested value, and its density where it counts.
@@ -227,8 +270,9 @@ private:
     bool m_uniform;
     uint32_t m_sampled_type;
     ref<Base> m_nested;
+    std::vector<ref<Texture>> m_strand;
 
-    MI_TRAVERSE_CB(Base, m_nested)
+    MI_TRAVERSE_CB(Base, m_nested, m_strand)
 };
 
 using Plugin = HairlutBSDF<float, Color<float, 3>>;

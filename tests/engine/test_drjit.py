@@ -342,7 +342,7 @@ def test_a_directory_is_read_where_the_scene_says(llvm, tmp_path):
         ({"mix": math.nan}, "mix is nan: expected a probability"),
         ({"nested": {"type": "dielectric"}}, "Dirac"),
         ({"second": {"type": "hair"}}, "expected one nested BSDF.*found 2"),
-        ({"direct_weight": 0.5}, "unreferenced"),
+        ({"direct_weight": 0.5}, "direct_weight.*the model 'fitted' has no parameters"),
     ],
     ids=str,
 )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """All tables of a model in the engine's arrays, and how one is read (luts/FORMAT.md), as in interpolant.py.
 
+Where a table depends on parameters of the hair, its cells are first blended over the nodes around them.
 Cells of two neighbouring rows are blended linearly in theta_r; a blended cell is the monotone rational
 quadratic of cell.py. Here it is written with ratios alone, so that no product leaves the range of a float:
 with the fraction f of the cell, g = 1 - f, w its width in x, s = w / h, and e = d / s for its slopes d,
@@ -22,19 +23,23 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from ..axes import Parameter, node_count
 from ..table import Table
 from .arrays import Number, Records, last
+from .nodes import ONE_CORNER, Corner, Nodes, ParameterAxis, blend, corners, steps
 
 
 @dataclass(frozen=True)
 class Place:
     """Where a table lies among all: numbers that are the same for every direction, or one for each.
 
+    number        of the table
     cells, knots  of all tables, before this one's
-    columns, rows of cells
+    columns, rows of cells, at one node of the parameters
     low, high     domain, rad; theta_r of the first row, and rows per radian
     """
 
+    number: Number
     cells: Number
     knots: Number
     columns: Number
@@ -46,13 +51,13 @@ class Place:
 
 
 class Axes:
-    """The tables of a model."""
+    """The tables of a model, and the nodes of its parameters on which they depend."""
 
-    def __init__(self, tables: Sequence[Table]) -> None:
+    def __init__(self, tables: Sequence[Table], parameters: Sequence[Parameter] = ()) -> None:
         cells = [_cells(table) for table in tables]
         knots = [_knots(table) for table in tables]
         places = [
-            (sum(map(len, cells[:k])), sum(map(len, knots[:k])), *_shape(table))
+            (k, sum(map(len, cells[:k])), sum(map(len, knots[:k])), *_shape(table))
             for k, table in enumerate(tables)
         ]
         self._cells = Records(np.concatenate(cells))
@@ -61,6 +66,28 @@ class Axes:
         self._places = Records(np.array(places))
         self._most = max(table.width for table in tables) - 1
         self._fixed = [Place(*place) for place in places]
+        self._set_grids(tables, [parameter.name for parameter in parameters])
+
+    def _set_grids(self, tables: Sequence[Table], names: Sequence[str]) -> None:
+        """The axes of parameters: of each table (first, intervals, parameter, step), the shorter lists
+        completed by axes along which nothing changes."""
+        scales = [axis.nodes for table in tables for axis in table.axes]
+        self._dimensions = max(len(table.axes) for table in tables)
+        if not scales:
+            return
+        self._nodes = Nodes(scales)
+        self._grids, k = [], 0
+        for table in tables:
+            strides = steps([len(axis.nodes) for axis in table.axes])
+            grid = []
+            for axis, step in zip(table.axes, strides, strict=True):
+                grid.append((self._nodes.first[k], self._nodes.intervals[k], names.index(axis.name), step))
+                k += 1
+            self._grids.append(grid)
+        rows = [
+            axis for grid in self._grids for axis in grid + [(0, 1, 0, 0)] * (self._dimensions - len(grid))
+        ]
+        self._axes = Records(np.array(rows))
 
     def fixed(self, number: int) -> Place:
         """Of a table known to Python."""
@@ -69,9 +96,24 @@ class Axes:
     def place(self, number: Number) -> Place:
         """Of a table that may differ from direction to direction."""
         place = self._places[number]
-        return Place(*map(mi.UInt32, place[:4]), *place[4:])
+        return Place(*map(mi.UInt32, place[:5]), *place[5:])
 
-    def sample(self, table: Place, theta_r: Number, u: Number) -> Number:
+    def corners(self, table: Place, values: Sequence[Number]) -> list[Corner]:
+        """The nodes of a table around the values of the model's parameters, in order."""
+        if not self._dimensions:
+            return ONE_CORNER
+        if isinstance(table.number, int):
+            grid = self._grids[table.number]
+        else:
+            rows = [self._axes[table.number * self._dimensions + a] for a in range(self._dimensions)]
+            grid = [tuple(map(mi.UInt32, row)) for row in rows]
+        axes = [
+            ParameterAxis(first, intervals, _chosen(values, parameter), step)
+            for first, intervals, parameter, step in grid
+        ]
+        return corners(self._nodes, axes)
+
+    def sample(self, table: Place, around: Sequence[Corner], theta_r: Number, u: Number) -> Number:
         """The angle drawn with u in [0, 1), counted from the nearer end of u: exact in both tails."""
         upper = u > 0.5
         m = dr.select(upper, 1 - u, u)
@@ -79,22 +121,22 @@ class Axes:
         i = last(halves, (self._most + 1) // 2, lambda i: self._knots[table.knots + i][0] <= m)
         start, h = self._knots[table.knots + i]
         f = dr.minimum(dr.maximum((m - start) / h, 0), 1)
-        x0, d0, x1, d1 = self._cell(table, theta_r, dr.select(upper, table.columns - 1 - i, i))
+        x0, d0, x1, d1 = self._cell(table, around, theta_r, dr.select(upper, table.columns - 1 - i, i))
         from_, to = dr.select(upper, x1, x0), dr.select(upper, x0, x1)
         e0, e1 = _ratios(x0, d0, x1, d1, h)
         first, second = dr.select(upper, e1, e0), dr.select(upper, e0, e1)
         return from_ + (to - from_) * (f * f + first * f * (1 - f)) / _denominator(f, 1 - f, first, second)
 
-    def pdf(self, table: Place, theta_r: Number, x: Number) -> Number:
+    def pdf(self, table: Place, around: Sequence[Corner], theta_r: Number, x: Number) -> Number:
         """Density per rad with which sample draws x; 0 outside the domain."""
         row, t = self._row(table, theta_r)
 
         def at_most(i: Number) -> Number:
-            low, high = self._edges[row + i]
+            low, high = blend(self._edges, row + i, table.columns * table.rows, around)
             return (1 - t) * low + t * high <= x
 
         i = last(table.columns, self._most, at_most)
-        x0, d0, x1, d1 = self._cell(table, theta_r, i)
+        x0, d0, x1, d1 = self._cell(table, around, theta_r, i)
         h = self._knots[table.knots + i][1]
         e0, e1 = _ratios(x0, d0, x1, d1, h)
         w = x1 - x0
@@ -113,17 +155,19 @@ class Axes:
         j = dr.minimum(mi.UInt32(at), table.rows - 1)
         return table.cells + j * table.columns, at - j
 
-    def _cell(self, table: Place, theta_r: Number, i: Number) -> list[Number]:
+    def _cell(self, table: Place, around: Sequence[Corner], theta_r: Number, i: Number) -> list[Number]:
         row, t = self._row(table, theta_r)
-        ends = self._cells[row + i]
+        ends = blend(self._cells, row + i, table.columns * table.rows, around)
         return [(1 - t) * a + t * b for a, b in zip(ends[:4], ends[4:], strict=True)]
 
 
 def _cells(table: Table) -> np.ndarray:
-    """(cells, 8): x0 d0 x1 d1 of each cell of a row, and the same of the next row."""
+    """(cells, 8): x0 d0 x1 d1 of each cell of a row, and the same of the next row, node by node."""
     knots = np.stack([table.texels, table.slopes], -1)
-    rows = np.concatenate([knots[:, :-1], knots[:, 1:]], -1)
-    return np.concatenate([rows[:-1], rows[1:]], -1).reshape(-1, 8)
+    rows = np.concatenate([knots[:, :-1], knots[:, 1:]], -1).reshape(
+        node_count(table.axes), table.height, table.width - 1, 4
+    )
+    return np.concatenate([rows[:, :-1], rows[:, 1:]], -1).reshape(-1, 8)
 
 
 def _knots(table: Table) -> np.ndarray:
@@ -136,6 +180,16 @@ def _shape(table: Table) -> tuple[float, ...]:
     low, high = table.theta_r_range
     rows = table.height - 1
     return table.width - 1, rows, *table.domain, low, rows / (high - low)
+
+
+def _chosen(values: Sequence[Number], parameter: Number) -> Number:
+    """The value of a parameter, whose number may differ from direction to direction."""
+    if isinstance(parameter, int):
+        return values[parameter]
+    value = values[0]
+    for p in range(1, len(values)):
+        value = dr.select(parameter == p, values[p], value)
+    return value
 
 
 def _ratios(x0: Number, d0: Number, x1: Number, d1: Number, h: Number) -> tuple[Number, Number]:

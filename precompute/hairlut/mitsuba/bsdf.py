@@ -4,6 +4,8 @@
     model     string  a shipped model, such as "fitted" (default) or "brown", or a directory of textures
     mix       float   probability of the nested BSDF's own sampling, in [0, 1] (default 0)
     (nested)  bsdf    one BSDF without Dirac components that gives the values
+    (name)    float or texture  a parameter of the model by its name, such as beta_m, in the model's unit
+                                (default its standard value); beyond its range the nearer end counts
 
 Conventions. On a curve the shading frame's t, local +y, is the fibre: sin(theta) = w.y. Azimuths run from
 the surface normal, local +z, towards local +x. The engine's si.wi is the viewer direction (theta_r, phi_r),
@@ -12,17 +14,23 @@ its wo the incident one (theta_i, phi_i). The density is per steradian over the 
 The offset is h = sin(phi_r): the surface mirrors a ray that hits there to phi_i = -phi_r, the relative
 azimuth -2 asin(h), which is the sign of hairlut.h.
 
+A texture of a parameter may differ from strand to strand: a mesh_attribute, a bitmap, or for curves the
+texture "hair_strands" (strands.py). What it gives should be what the nested BSDF uses; where it is not, there
+is more noise, and no bias.
+
 Directions and densities are detached: gradients pass through the nested BSDF's value over a constant density.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import drjit as dr
 import mitsuba as mi
 
+from ..axes import Parameter
 from ..config import data
 from ..errors import HairlutError
 from ..exr import read_model
@@ -57,6 +65,7 @@ def bsdf_class() -> type:
                 raise HairlutError(f"hairlut: mix is {self.mix:g}: expected a probability, 0 to 1")
             self.nested = _nested(props)
             self.sampler = Sampler(read(self.model))
+            self.strand = _textures(props, self.model, self.sampler.parameters)
             self.m_components = [self.nested.flags(k) for k in range(self.nested.component_count())]
             self.m_flags = self.nested.flags()
 
@@ -65,7 +74,8 @@ def bsdf_class() -> type:
                 return self.nested.sample(ctx, si, sample1, sample2, active)
             with dr.suspend_grad():
                 u_lobe = (sample1 - self.mix) / (1 - self.mix)
-                theta_i, phi_i = self.sampler.sample(*_viewer(si.wi), u_lobe, sample2.x, sample2.y)
+                values = self._values(si, active)
+                theta_i, phi_i = self.sampler.sample(*_viewer(si.wi), u_lobe, sample2.x, sample2.y, values)
                 wo = _direction(theta_i, phi_i)
                 if self.mix > 0:
                     own = sample1 < self.mix
@@ -97,19 +107,27 @@ def bsdf_class() -> type:
                 return own
             with dr.suspend_grad():
                 theta_i, phi_i = _angles(wo)
-                density = self.sampler.pdf(*_viewer(si.wi), theta_i, phi_i)
+                values = self._values(si, active)
+                density = self.sampler.pdf(*_viewer(si.wi), theta_i, phi_i, values)
                 density /= dr.maximum(_across(wo), MIN_COSINE)
                 return dr.select(active, self.mix * dr.detach(own) + (1 - self.mix) * density, 0)
+
+        def _values(self, si: Any, active: Number) -> list[Number]:
+            return [texture.eval_1(si, active) for texture in self.strand.values()]
 
         def eval_diffuse_reflectance(self, si, active=True):
             return self.nested.eval_diffuse_reflectance(si, active)
 
         def traverse(self, callback):
             callback.put("nested", self.nested, mi.ParamFlags.Differentiable)
+            for name, texture in self.strand.items():
+                callback.put(name, texture, mi.ParamFlags.NonDifferentiable)
 
         def to_string(self):
+            strand = "".join(f"  {name} = {texture},\n" for name, texture in self.strand.items())
             return (
-                f"HairlutBSDF[\n  model = {self.model},\n  mix = {self.mix:g},\n  nested = {self.nested}\n]"
+                f"HairlutBSDF[\n  model = {self.model},\n  mix = {self.mix:g},\n"
+                f"{strand}  nested = {self.nested}\n]"
             )
 
     return HairlutBSDF
@@ -128,6 +146,18 @@ def _nested(props: mi.Properties) -> Any:
             "hairlut: the nested BSDF has a Dirac component, which no table samples: nest a rough one"
         )
     return nested[0]
+
+
+def _textures(props: mi.Properties, model: str, parameters: Sequence[Parameter]) -> dict[str, Any]:
+    """A texture for each parameter of the model, in order."""
+    names = [parameter.name for parameter in parameters]
+    for name, value in props.items():
+        if name in ("model", "mix", *names) or isinstance(value, mi.BSDF):
+            continue
+        raise HairlutError(
+            f"hairlut: parameter {name!r}: the model {model!r} has {', '.join(names) or 'no parameters'}"
+        )
+    return {each.name: props.get_unbounded_texture(each.name, each.standard) for each in parameters}
 
 
 def _across(w: Any) -> Number:

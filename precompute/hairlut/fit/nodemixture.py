@@ -28,11 +28,15 @@ from .shapes import Shapes
 from .turning import TWO_PI
 
 STEPS = 9  # values of a parameter that are candidates
-CELLS = 32
+CELLS, MOST_PHI = 32, 144  # of theta_i and phi: shapes are known, and cells need not resolve them
 FEW_OFFSETS = 13  # by which dependences are found
 VIEWERS = np.array([-0.96, -0.7, -0.35, 0.0, 0.35, 0.7, 0.96])  # parts of the largest theta_r
 GRAZING = np.array([5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 5.0])
 """How many times as much may be lost there: few viewers are grazing."""
+UNSURE = 1.5  # times V with the best shares, at which others count as worse
+WORST = 3.0  # times the mean that may be lost at one theta_r
+BYTES, THINNED = 500_000, 3  # of the mixture, about, and how much smaller fewer theta_r and offsets make it
+MOST_DOUBLINGS = 6  # of what nodes may cost, for a mixture of this size
 
 
 @dataclass(frozen=True)
@@ -50,15 +54,25 @@ class Fitting:
     def __init__(self, box: Box, lobes: list[BakedLobe], theta_r: Array, angle: Array, turning: bool):
         self._box, self._lobes, self._theta_r, self._angle = box, lobes, theta_r, angle
         self._turning = turning
+        self._known: dict[Place, Lit] = {}
 
-    def at(self, place: Place, start: Lit, fixed: bool = False) -> Lit:
-        """The shares and turns at a place, from those of a place beside; fixed: V with just these."""
+    def at(self, place: Place, start: Lit) -> Lit:
+        """The shares and turns at a place, from those of a place beside."""
+        if place not in self._known:
+            self._known[place] = self._fitted(place, start, False)
+        return self._known[place]
+
+    def fixed(self, place: Place, start: Lit) -> Lit:
+        """V at a place with given shares and turns."""
+        return self._fitted(place, start, True)
+
+    def _fitted(self, place: Place, start: Lit, fixed: bool) -> Lit:
         box, offset = self._box, np.sin(self._angle)
         density, named = box.density_at(place), box.named(place)
         some = offset[np.unique([0, len(offset) // 2, max(len(offset) - 2, 0)])]
         edges = cells.theta_edges(density, self._theta_r, some, CELLS)
         viewers = self._theta_r[np.unique([0, len(self._theta_r) // 2, len(self._theta_r) - 1])]
-        m = cells.phi_count(density, viewers, offset[:-1][::6])
+        m = min(cells.phi_count(density, viewers, offset[:-1][::6]), MOST_PHI)
         lobes = [BakedLobe(x.name, x.theta.at(named), x.phi and x.phi.at(named)) for x in self._lobes]
         rows = []
         variance = []
@@ -109,8 +123,8 @@ def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tu
         for value in values if values[0] == anchor[p] else values[::-1]:
             place = with_value(anchor, p, value)
             here = fitting.at(place, here)
-            same = fitting.at(place, first, fixed=True)
-            if ((same.variance - here.variance) / GRAZING).max() > slack:
+            same = fitting.fixed(place, first)
+            if ((same.variance - UNSURE * here.variance) / GRAZING).max() > slack:
                 found.append(p)
                 break
     return tuple(found)
@@ -131,13 +145,18 @@ def mixture(
     fitting = Fitting(box, lobes, theta_r, angle, start.turning)
     first = fitting.at(anchor, of_shapes(start, theta_r, angle))
     bend, kept = _bends(lobes), {}
-    for number, p in enumerate(axes):
-        report(0.5 * number / max(len(axes), 1))
-        kept[p] = _nodes_along(box, fitting, first, anchor, p, bend, allowed[box.parameters[p].name])
+    for doublings in range(MOST_DOUBLINGS):
+        for number, p in enumerate(axes):
+            report(0.3 * number / len(axes))
+            most = allowed[box.parameters[p].name] * 2**doublings
+            kept[p] = _nodes_along(box, fitting, first, anchor, p, bend, most)
+        count = np.prod([len(kept[p][0]) for p in axes])
+        if 8 * len(lobes) * count * len(theta_r) * len(angle) / THINNED <= BYTES:
+            break
     done: dict[tuple[int, ...], Lit] = {} if axes else {(): first}
     order = sorted(product(*(range(len(kept[p][0])) for p in axes)), key=sum)
     for number, index in enumerate(order if axes else []):
-        report(0.5 + 0.5 * number / len(order))
+        report(0.3 + 0.7 * number / len(order))
         done[index] = _at_index(fitting, done, index, axes, kept, anchor)
     values = [kept[p][0] for p in axes]
     return _assembled(box, lobes, axes, values, done, theta_r, angle, allowed)
@@ -182,8 +201,7 @@ def _nodes_along(
 
 
 class _Loss:
-    """loss(i, j): the bound of V between two values of a parameter, the mean over the offsets, the largest
-    over theta_r."""
+    """loss(i, j): the bound of V between two values of a parameter."""
 
     def __init__(self, values: Array, along: list[Lit], bend: Array):
         self._values, self._along, self._bend = values, along, bend
@@ -193,8 +211,13 @@ class _Loss:
         for c in range(i + 1, j):
             t = (self._values[c] - self._values[i]) / (self._values[j] - self._values[i])
             here = self._along[c]
-            worst = max(worst, float(_bound(low, high, t, here, self._bend).mean(axis=1).max()))
+            worst = max(worst, _of_viewers(_bound(low, high, t, here, self._bend).mean(axis=1)))
         return worst
+
+
+def _of_viewers(lost: Array) -> float:
+    """Of V by theta_r what counts: the mean, or a part of the largest."""
+    return float(max(lost.mean(), lost.max() / WORST))
 
 
 def _bound(low: Lit, high: Lit, t: Array | float, here: Lit, bend: Array) -> Array:
@@ -272,6 +295,8 @@ def _fewest(share: Array, turn: Array, axis: int, places: Array, bend: Array, al
         drawn = (1 - t) * share[i] + t * share[j]
         drawn_turn = turn[i] + t * wrap(turn[j] - turn[i])
         lost = bound(share[i + 1 : j], turn[i + 1 : j], drawn, drawn_turn, bend)
-        return float(lost.sum(axis=0).max() / len(places) if axis == 2 else lost.mean(axis=2).max())
+        if axis == 2:  # (places, nodes, theta_r)
+            return max(map(_of_viewers, lost.sum(axis=0) / len(places)))
+        return float(lost.mean(axis=2).max() / WORST)  # (places, nodes, offsets)
 
     return nodes.fewest(len(places), loss, allowed)

@@ -25,7 +25,7 @@ from .turning import TWO_PI
 WIDTH, WARP = 64, Warp("octaves", 2.0**-11)  # of the tables by which nodes are chosen
 BYTES, USUAL_WIDTH = 700_000, 24  # of all tables, about
 MOST_DOUBLINGS = 6  # of what nodes may cost, for tables of this size
-ENOUGH_JOINED = 3  # places by which the shapes of all rows are fitted
+ENOUGH_JOINED = 2  # places by which the shapes of all rows are fitted
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ START = {"theta_r": 49, "offset": 25}
 COARSE = {"theta_r": 25, "offset": 13}
 LIMITS = {"theta_r": 145, "offset": 65}
 TWELVES = 12  # rows of theta_r are so many intervals, times a whole number
-SLOW = 80.0  # times as long as the anchor a fit takes for each parameter, about
+SLOW = 40.0  # times as long as the anchor a fit takes for each parameter, about
 RARE = 5.0  # times the tolerance that the worst hundredth of places may lose
 
 Report = Callable[[str, float], None]

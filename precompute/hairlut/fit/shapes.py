@@ -22,8 +22,8 @@ from .turning import TWO_PI
 
 OFFSETS = 9  # by which shapes are fitted
 CELLS = 32  # of theta_i
-SWEEPS = 40
-JOINT = 30  # sweeps of all places that have the same shapes
+SWEEPS = 24
+JOINT = 24  # sweeps of all places that have the same shapes
 BOTH, THETA, PHI, NEITHER = (True, True), (True, False), (False, True), (False, False)
 
 

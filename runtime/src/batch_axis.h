@@ -9,13 +9,6 @@
 /* Samples a pass; the arrays of a block have room for a vector more, which a group that ends within it writes. */
 enum { BLOCK = 256, ROOM = BLOCK + LANES };
 
-/* Before a loop over single samples: less of it is counting. clang does so by itself. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define HAIRLUT_UNROLLED _Pragma("GCC unroll 4")
-#else
-#define HAIRLUT_UNROLLED
-#endif
-
 /* Samples on an axis. A pass stores its results in place of what it no longer needs, so that all of it stays in the first-level
  * cache, beside the table. */
 typedef struct axis_samples {

@@ -74,8 +74,10 @@ size_t hairlut_table_floats(const hairlut_table *table);
 /* Fills an axis, whose arrays go to `memory`, of so many floats, from the first node's texels. The table is valid. */
 void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *table, float *memory);
 
-/* Makes the axis the blend of those at the corners. The axis of node p is stored likewise, (p + 1) * pitch floats behind it. */
-void hairlut_blend_axis(const hairlut_axis *axis, float *memory, ptrdiff_t pitch, const hairlut_corners *corners);
+/* Makes the axis the blend of those at the corners around the standard values. That of node p is stored likewise,
+ * (p + 1) * pitch floats behind it. */
+void hairlut_blend_axis(const hairlut_axis *axis, float *memory, const hairlut_spacing *nodes,
+                        const hairlut_corners *corners);
 
 /* What the strands of a model choose from: its descriptors are valid, and known ones. */
 size_t hairlut_strands_floats(const hairlut_model_desc *desc);
@@ -84,18 +86,23 @@ float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_de
 /* The number of the grid of these axes, new or one that there is. Its scales go to *memory, which moves to their end. */
 int hairlut_add_grid(hairlut_strands *strands, const hairlut_parameter_nodes *axes, int axis_count, float **memory);
 
-/* The corners of a grid around the standard values. */
+/* How what stands at the nodes of a grid is spaced, from its pitch. */
+hairlut_spacing hairlut_space(const hairlut_strands *strands, int number, ptrdiff_t pitch);
+
+/* The corners of a grid without axes, and of one around the standard values. */
+hairlut_corners hairlut_only_corner(void);
 hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int grid);
 
 size_t hairlut_fours_floats(const hairlut_mixture_desc *desc, int lobe_count);
-void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *desc, int lobe_count, float *memory);
+void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *desc, int lobe_count, int grid,
+                         float *memory);
 
 hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lobe_count, char *message);
 size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count);
 
 /* At one point of the parameters: the corners around it, over the nodes of the mixture's axes. */
 void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *desc, int lobe_count,
-                           const hairlut_corners *corners, float *memory);
+                           const hairlut_spacing *nodes, const hairlut_corners *corners, float *memory);
 
 /* A lobe's share of the sum, and its turn, at node `node` of the parameters, j of theta_r, o of the offset. */
 double hairlut_share_at(const hairlut_mixture_desc *desc, int lobe_count, int k, size_t node, int j, int o);

@@ -134,33 +134,35 @@ double hairlut_turn_at(const hairlut_mixture_desc *desc, int k, size_t node, int
     return desc->turn ? (double)desc->turn[place(desc, k, node, j, o)] : 0.0;
 }
 
-/* The blends over the corners. */
-static double blended_share(const hairlut_mixture_desc *desc, int lobe_count, const hairlut_corners *corners, int k, int j,
-                            int o)
+/* Blends over the corners of a node of the parameters. */
+static double blended_share(const hairlut_mixture_desc *desc, int lobe_count, const hairlut_spacing *nodes,
+                            const hairlut_corners *corners, int k, int j, int o)
 {
     double sum = 0.0;
-    for (int c = 0; c < corners->count; ++c)
-        sum += (double)corners->weight[c] * hairlut_share_at(desc, lobe_count, k, (size_t)corners->node[c], j, o);
+    for (int c = 0; c < nodes->count; ++c)
+        sum += (double)hairlut_quad_first(corners->weight[c]) *
+               hairlut_share_at(desc, lobe_count, k, (size_t)(corners->node + nodes->corner[c]), j, o);
     return sum;
 }
 
-static double blended_turn(const hairlut_mixture_desc *desc, const hairlut_corners *corners, int k, int j, int o)
+static double blended_turn(const hairlut_mixture_desc *desc, const hairlut_spacing *nodes, const hairlut_corners *corners,
+                           int k, int j, int o)
 {
-    const double low = hairlut_turn_at(desc, k, (size_t)corners->node[0], j, o);
+    const double low = hairlut_turn_at(desc, k, (size_t)corners->node, j, o);
     double turn = low;
-    for (int c = 1; c < corners->count; ++c) {
-        const double other = hairlut_turn_at(desc, k, (size_t)corners->node[c], j, o);
-        turn += (double)corners->weight[c] * hairlut_shorter_arc(other - low);
+    for (int c = 1; c < nodes->count; ++c) {
+        const double other = hairlut_turn_at(desc, k, (size_t)(corners->node + nodes->corner[c]), j, o);
+        turn += (double)hairlut_quad_first(corners->weight[c]) * hairlut_shorter_arc(other - low);
     }
     return turn;
 }
 
-static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lobe_count, const hairlut_corners *corners,
-                         int k, int j, int o)
+static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lobe_count, const hairlut_spacing *nodes,
+                         const hairlut_corners *corners, int k, int j, int o)
 {
     const int above = j + 1 < desc->theta_r_count ? j + 1 : j;
-    const double turn = blended_turn(desc, corners, k, j, o), next = blended_turn(desc, corners, k, above, o);
-    stored[0] = (float)blended_share(desc, lobe_count, corners, k, j, o);
+    const double turn = blended_turn(desc, nodes, corners, k, j, o), next = blended_turn(desc, nodes, corners, k, above, o);
+    stored[0] = (float)blended_share(desc, lobe_count, nodes, corners, k, j, o);
     stored[1] = hairlut_wrap((float)hairlut_shorter_arc(turn), -hairlut_pi);
     stored[2] = (float)hairlut_shorter_arc(next - turn);
 }
@@ -187,7 +189,7 @@ static void store_nodes(float *stored, const float *nodes, int count, int is_off
 }
 
 void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *d, int lobe_count,
-                           const hairlut_corners *corners, float *memory)
+                           const hairlut_spacing *nodes, const hairlut_corners *corners, float *memory)
 {
     float *corner = memory,
           *theta_r = memory + hairlut_mixture_floats(d, lobe_count) - 2 * (d->theta_r_count + d->offset_count);
@@ -204,7 +206,7 @@ void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc 
     for (int j = 0; j < d->theta_r_count; ++j)
         for (int o = 0; o < d->offset_count; ++o, corner += HAIRLUT_CORNER * lobe_count) {
             for (int k = 0; k < lobe_count; ++k) {
-                store_corner(corner + HAIRLUT_CORNER * k, d, lobe_count, corners, k, j, o);
+                store_corner(corner + HAIRLUT_CORNER * k, d, lobe_count, nodes, corners, k, j, o);
                 mixture->turned |= corner[HAIRLUT_CORNER * k + 1] != 0.0f;
             }
             store_weights(corner, lobe_count);

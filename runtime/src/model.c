@@ -137,7 +137,7 @@ typedef struct table_list {
     const hairlut_table *given[HAIRLUT_MOST_TABLES];
     hairlut_table tables[HAIRLUT_MOST_TABLES];
     hairlut_axis axes[HAIRLUT_MOST_TABLES];
-    hairlut_varied varied[HAIRLUT_MOST_TABLES];
+    hairlut_spacing nodes[HAIRLUT_MOST_TABLES];
     int count;
 } table_list;
 
@@ -222,8 +222,8 @@ static float *build_table(table_list *list, int k, const hairlut_strands *strand
     }
     hairlut_build_axis(&list->axes[k], table, memory);
     if (count > 1) {
-        const hairlut_corners corners = hairlut_standard_corners(strands, list->varied[k].grid);
-        hairlut_blend_axis(&list->axes[k], memory, (ptrdiff_t)floats, &corners);
+        const hairlut_corners corners = hairlut_standard_corners(strands, list->nodes[k].grid);
+        hairlut_blend_axis(&list->axes[k], memory, &list->nodes[k], &corners);
     }
     return memory + count * floats;
 }
@@ -234,17 +234,17 @@ static float *build_strands(hairlut_strands *strands, const hairlut_model_desc *
     float *next = hairlut_build_parameters(strands, desc, memory), *fours;
     for (int k = 0; k < list->count; ++k) {
         const hairlut_table *table = &list->tables[k];
-        list->varied[k].grid = hairlut_add_grid(strands, table->axes, table->axis_count, &next);
-        list->varied[k].pitch = table->axis_count > 0 ? (ptrdiff_t)hairlut_table_floats(table) : 0;
+        const int grid = hairlut_add_grid(strands, table->axes, table->axis_count, &next);
+        list->nodes[k] = hairlut_space(strands, grid, table->axis_count > 0 ? (ptrdiff_t)hairlut_table_floats(table) : 0);
     }
-    strands->mixture_grid = hairlut_add_grid(strands, desc->mixture->axes, desc->mixture->axis_count, &next);
+    const int grid = hairlut_add_grid(strands, desc->mixture->axes, desc->mixture->axis_count, &next);
     for (int k = 0; k < desc->lobe_count; ++k) {
         const hairlut_lobe_desc *lobe = lobe_at(desc, k);
-        strands->theta[k] = list->varied[index_of(list, lobe->theta)];
-        strands->phi[k] = list->varied[index_of(list, lobe->phi ? lobe->phi : lobe->theta)];
+        strands->theta[k] = list->nodes[index_of(list, lobe->theta)];
+        strands->phi[k] = list->nodes[index_of(list, lobe->phi ? lobe->phi : lobe->theta)];
     }
     fours = memory + hairlut_strands_floats(desc);
-    hairlut_build_fours(strands, desc->mixture, desc->lobe_count, fours);
+    hairlut_build_fours(strands, desc->mixture, desc->lobe_count, grid, fours);
     return fours + hairlut_fours_floats(desc->mixture, desc->lobe_count);
 }
 
@@ -254,10 +254,12 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
     hairlut_lobe *lobes = strands ? (hairlut_lobe *)(strands + 1) : (hairlut_lobe *)(model + 1);
     float *mixture = (float *)(lobes + desc->lobe_count);
     float *next = mixture + hairlut_mixture_floats(desc->mixture, desc->lobe_count);
-    hairlut_corners corners = {1, {0}, {1.0f}};
+    hairlut_corners corners = hairlut_only_corner();
+    hairlut_spacing nodes = {0, 1, 1, {0}};
     if (strands) {
         next = build_strands(strands, desc, list, next);
-        corners = hairlut_standard_corners(strands, strands->mixture_grid);
+        nodes = hairlut_space(strands, strands->mixture.grid, 1);
+        corners = hairlut_standard_corners(strands, nodes.grid);
     }
     next += (line - (uintptr_t)next % line) % line / sizeof(float);
     for (int k = 0; k < list->count; ++k)
@@ -265,7 +267,7 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
     number_grids(list);
     for (int k = 0; k < desc->lobe_count; ++k)
         build_lobe(&lobes[k], lobe_at(desc, k), list);
-    hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, &corners, mixture);
+    hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, &nodes, &corners, mixture);
     model->strands = strands;
     model->lobe_count = desc->lobe_count;
     model->lobes = lobes;

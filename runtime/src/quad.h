@@ -56,6 +56,7 @@ static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return _mm_andnot_
 static inline void hairlut_quad_store(float *p, hairlut_quad a) { _mm_storeu_ps(p, a); }
 static inline float hairlut_quad_first(hairlut_quad a) { return _mm_cvtss_f32(a); }
 static inline float hairlut_quad_second(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1)); }
+static inline float hairlut_quad_last(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 3)); }
 /* clang-format on */
 
 /* `negative` where a's sign bit is set, else `positive` */
@@ -156,6 +157,7 @@ static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return vabsq_f32(a
 static inline void hairlut_quad_store(float *p, hairlut_quad a) { vst1q_f32(p, a); }
 static inline float hairlut_quad_first(hairlut_quad a) { return vgetq_lane_f32(a, 0); }
 static inline float hairlut_quad_second(hairlut_quad a) { return vgetq_lane_f32(a, 1); }
+static inline float hairlut_quad_last(hairlut_quad a) { return vgetq_lane_f32(a, 3); }
 /* clang-format on */
 
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
@@ -294,6 +296,7 @@ static inline hairlut_quad hairlut_quad_abs(hairlut_quad a)
 static inline void hairlut_quad_store(float *p, hairlut_quad a) { memcpy(p, a.lane, sizeof a.lane); }
 static inline float hairlut_quad_first(hairlut_quad a) { return a.lane[0]; }
 static inline float hairlut_quad_second(hairlut_quad a) { return a.lane[1]; }
+static inline float hairlut_quad_last(hairlut_quad a) { return a.lane[3]; }
 /* clang-format on */
 
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)

@@ -14,6 +14,24 @@ typedef struct strand {
     int known; /* no parameter is NaN */
 } strand;
 
+/* hairlut_corners_of, compiled once for each number of axes that is common. */
+static inline void place_corners(const hairlut_node_grid *grid, const hairlut_row *places, hairlut_corners *corners)
+{
+    switch (grid->axis_count) {
+    case 0:
+        hairlut_corners_of(grid, places, 0, corners);
+        break;
+    case 1:
+        hairlut_corners_of(grid, places, 1, corners);
+        break;
+    case 3:
+        hairlut_corners_of(grid, places, 3, corners);
+        break;
+    default:
+        hairlut_corners_of(grid, places, grid->axis_count, corners);
+    }
+}
+
 static void place_strand(const hairlut_model *model, const float *parameters, strand *s)
 {
     const hairlut_strands *strands = model->strands;
@@ -28,7 +46,7 @@ static void place_strand(const hairlut_model *model, const float *parameters, st
             hairlut_scale_place(&strands->scales[k], hairlut_clamp(parameters[p], strands->least[p], strands->most[p]));
     }
     for (int g = 0; g < strands->grid_count; ++g)
-        hairlut_corners_of(strands, &strands->grids[g], places, &s->corners[g]);
+        place_corners(&strands->grids[g], places, &s->corners[g]);
 }
 
 static void mix_strand(strand *s, const float *shares, float theta_r, float offset)
@@ -36,7 +54,7 @@ static void mix_strand(strand *s, const float *shares, float theta_r, float offs
     const float h = hairlut_clamp(offset, -1.0f, 1.0f);
     hairlut_mix *mix = &s->mix;
     mix->side = (float)(1 - 2 * (s->model->mixture.mirrored & (h < 0.0f)));
-    hairlut_strand_mixture(s->model, &s->corners[s->model->strands->mixture_grid], theta_r, h, mix);
+    hairlut_strand_mixture(s->model, &s->corners[s->model->strands->mixture.grid], theta_r, h, mix);
     mix->sum = 0.0f;
     for (int k = 0; k < s->model->lobe_count; ++k)
         mix->sum += mix->share[k];
@@ -47,19 +65,13 @@ static void mix_strand(strand *s, const float *shares, float theta_r, float offs
         mix->weight[k] = mix->share[k] * unit;
 }
 
-static hairlut_blended blended(const strand *s, const hairlut_axis *axis, const hairlut_varied *varied)
-{
-    const hairlut_blended table = {axis, &s->corners[varied->grid], varied->pitch};
-    return table;
-}
-
 /* hairlut_lobe_draw */
 static hairlut_drawn draw(const strand *s, int k, float theta_r, float u_theta, float u_phi)
 {
     const hairlut_lobe *lobe = &s->model->lobes[k];
     const hairlut_strands *strands = s->model->strands;
-    const hairlut_blended theta = blended(s, &lobe->theta, &strands->theta[k]),
-                          phi = blended(s, &lobe->phi, &strands->phi[k]);
+    const hairlut_blended theta = hairlut_blended_table(&lobe->theta, &strands->theta[k], s->corners),
+                          phi = hairlut_blended_table(&lobe->phi, &strands->phi[k], s->corners);
     const hairlut_row row = hairlut_axis_row(&lobe->theta, theta_r);
     const hairlut_placed a = hairlut_strand_find_place(&theta, row, u_theta);
     if (lobe->uniform)
@@ -74,28 +86,35 @@ static float lobe_azimuth(const strand *s, int k, float r, float i)
     return hairlut_turned_relative(hairlut_relative_azimuth(s->model->lobes[k].azimuth, r, i), s->mix.turn[k], s->mix.side);
 }
 
-/* The searches of a lobe's axes, as hairlut_lobe_begin_search. Returns 1 where its domain contains the direction, else 0. */
-static float begin_search(const strand *s, int k, float theta_r, float theta_i, float phi, hairlut_strand_search *next)
+/* Begins the searches of a lobe's axes, as hairlut_lobe_begin_search. Returns 1 where its domain contains the direction, else 0. */
+HAIRLUT_INLINE float begin_search(const strand *s, int k, float theta_r, float theta_i, float phi,
+                                  hairlut_strand_search *next)
 {
     const hairlut_lobe *lobe = &s->model->lobes[k];
     const hairlut_strands *strands = s->model->strands;
+    const hairlut_blended theta = hairlut_blended_table(&lobe->theta, &strands->theta[k], s->corners);
     const hairlut_row row = hairlut_axis_row(&lobe->theta, theta_r);
-    next[0] = hairlut_strand_begin_search(blended(s, &lobe->theta, &strands->theta[k]), row, theta_i);
+    hairlut_strand_begin_search(&next[0], &theta, row, hairlut_axis_inside(&lobe->theta, theta_i));
     if (lobe->uniform)
         return (float)(next[0].x == theta_i);
-    next[1] =
-        hairlut_strand_begin_search(blended(s, &lobe->phi, &strands->phi[k]), hairlut_phi_row(lobe, theta_r, row), phi);
+    const hairlut_blended azimuth = hairlut_blended_table(&lobe->phi, &strands->phi[k], s->corners);
+    hairlut_strand_begin_search(&next[1], &azimuth, hairlut_phi_row(lobe, theta_r, row),
+                                hairlut_axis_inside(&lobe->phi, phi));
     return (float)((next[0].x == theta_i) & (next[1].x == phi));
 }
 
-/* The root and bend of all searches, as hairlut_end_searches. */
-static void end_searches(const hairlut_strand_search *search, int count, float *root, float *bend)
+/* The root and bend of all searches; whole quads are written. */
+static void end_searches(hairlut_strand_search *search, int count, float *root, float *bend)
 {
+    hairlut_found found[2 * HAIRLUT_MAX_LOBES + 3];
+    for (int k = 0; k < count; ++k)
+        hairlut_strand_end_search(&search[k]);
+    for (int k = 0; k < count; ++k)
+        found[k] = hairlut_strand_find(&search[k]);
+    if (count > 0)
+        found[count] = found[count + 1] = found[count + 2] = found[0];
     for (int first = 0; first < count; first += 4) {
-        hairlut_found found[4];
-        for (int l = 0; l < 4; ++l)
-            found[l] = first + l < count ? hairlut_strand_find(&search[first + l]) : found[0];
-        const hairlut_inverses inverse = hairlut_invert_four(found);
+        const hairlut_inverses inverse = hairlut_invert_four(found + first);
         hairlut_quad_store(root + first, inverse.root);
         hairlut_quad_store(bend + first, inverse.bend);
     }

@@ -27,25 +27,26 @@ typedef struct hairlut_scale {
     const float *nodes; /* for each, its value and 1 / (the next one's - its own); 0 at the last */
 } hairlut_scale;
 
-/* The axes of a table or of the mixture, by the numbers of their scales, the slowest first. */
+/* The axes of a table or of the mixture: the numbers of their scales, and nodes from one of an axis to the next; the fastest axis
+ * first. Of the 2^axis_count corners of a cell of nodes, number c is at the upper node of axis a where bit a of c is set. */
 typedef struct hairlut_node_grid {
     int axis_count;
-    int scale[HAIRLUT_MAX_AXES];
+    int scale[HAIRLUT_MAX_AXES], stride[HAIRLUT_MAX_AXES];
 } hairlut_node_grid;
 
-/* The nodes around a strand, and their weights, which sum to 1. */
+/* The cell of nodes around a strand: the node of its first corner, and the corners' weights, which sum to 1, in all lanes. */
 typedef struct hairlut_corners {
-    int count;
-    int node[HAIRLUT_CORNERS];
-    float weight[HAIRLUT_CORNERS];
+    int node;
+    hairlut_quad weight[HAIRLUT_CORNERS];
 } hairlut_corners;
 
-/* A table over parameters. The table of node p stands as the lobe's hairlut_axis does, (p + 1) * pitch floats behind it;
- * without axes the pitch is 0, and the only node is that axis itself. */
-typedef struct hairlut_varied {
-    ptrdiff_t pitch;
+/* What stands at the nodes of a grid, in units of its own: from one node to the next, and from the first corner to each. */
+typedef struct hairlut_spacing {
     int grid;
-} hairlut_varied;
+    int count; /* corners */
+    ptrdiff_t pitch;
+    ptrdiff_t corner[HAIRLUT_CORNERS];
+} hairlut_spacing;
 
 /* Shares and turns of four lobes at a node, side by side. A turn is in units of 2 pi / 2^32: the difference of two, modulo
  * 2^32, is the shorter arc. */
@@ -60,11 +61,14 @@ typedef struct hairlut_strands {
     char names[HAIRLUT_MAX_PARAMETERS][HAIRLUT_NAME_SIZE];
     hairlut_scale scales[HAIRLUT_MOST_SCALES];
     hairlut_node_grid grids[HAIRLUT_MOST_GRIDS]; /* number 0 is that without axes */
-    hairlut_varied theta[HAIRLUT_MAX_LOBES], phi[HAIRLUT_MAX_LOBES];
-    /* Of the mixture: fours ((node * rows + j) * columns + o) * four_count and so on are those of theta_r node j, offset o */
+    /* Of tables, in floats. That of node p stands as the lobe's hairlut_axis does, (p + 1) * pitch behind it; without axes the
+     * pitch is 0, and the only node is that axis itself. */
+    hairlut_spacing theta[HAIRLUT_MAX_LOBES], phi[HAIRLUT_MAX_LOBES];
+    /* Of the mixture, in fours: ((node * rows + j) * columns + o) * four_count and so on are those of theta_r node j, offset o */
+    hairlut_spacing mixture;
     const hairlut_four *fours;
     int four_count; /* lobes / 4, rounded up */
-    int mixture_grid;
+    int turns_vary; /* whether turns depend on parameters */
 } hairlut_strands;
 
 #endif

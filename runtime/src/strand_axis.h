@@ -1,116 +1,149 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A table at a strand: axis.h, of rows and cells that are blended over the corners of the parameters first. */
+/* A table at a strand: axis.h, of rows and cells that are blended over the corners of the parameters first.
+ *
+ * The functions of a search are compiled once for each number of corners that is common: then no loop over them is left. */
 #ifndef HAIRLUT_STRAND_AXIS_H
 #define HAIRLUT_STRAND_AXIS_H
 
 #include "axis.h"
-#include "strand.h"
+#include "corners.h"
 
-/* A table, and where a strand's nodes of it are. */
+/* A table at a strand. */
 typedef struct hairlut_blended {
     const hairlut_axis *axis;
-    const hairlut_corners *corners;
-    ptrdiff_t pitch;
+    const hairlut_spacing *nodes;
+    const hairlut_quad *weight; /* of the corners */
+    ptrdiff_t first;            /* floats from the axis' own arrays to those of the first corner */
 } hairlut_blended;
 
-/* Floats from the axis' own arrays to those of a corner's node */
-static inline ptrdiff_t hairlut_corner_offset(const hairlut_blended *table, int c)
+HAIRLUT_INLINE hairlut_blended hairlut_blended_table(const hairlut_axis *axis, const hairlut_spacing *nodes,
+                                                     const hairlut_corners *corners)
 {
-    return (table->corners->node[c] + 1) * table->pitch;
+    const hairlut_corners *mine = &corners[nodes->grid];
+    const hairlut_blended table = {axis, nodes, mine->weight, (mine->node + 1) * nodes->pitch};
+    return table;
 }
 
-static inline hairlut_quad hairlut_blend_quad(const hairlut_blended *table, const float *p)
+/* Four floats that stand at p in the arrays of the first corner; n corners. */
+HAIRLUT_INLINE hairlut_quad hairlut_blend_quad(const hairlut_blended *table, const float *p, int n)
 {
-    hairlut_quad sum = hairlut_quad_all(0.0f);
-    for (int c = 0; c < table->corners->count; ++c)
-        sum = hairlut_quad_add(sum, hairlut_quad_mul(hairlut_quad_all(table->corners->weight[c]),
-                                                     hairlut_quad_load(p + hairlut_corner_offset(table, c))));
+    hairlut_quad sum = hairlut_quad_mul(table->weight[0], hairlut_quad_load(p));
+    for (int c = 1; c < n; ++c)
+        sum = hairlut_quad_add(sum, hairlut_quad_mul(table->weight[c], hairlut_quad_load(p + table->nodes->corner[c])));
     return sum;
 }
 
-static inline float hairlut_blend_float(const hairlut_blended *table, const float *p)
+/* hairlut_count of a blended group of `size` */
+HAIRLUT_INLINE int hairlut_strand_count(const hairlut_blended *table, const float *group, hairlut_quad t, float x, int size,
+                                        int n)
 {
-    float sum = 0.0f;
-    for (int c = 0; c < table->corners->count; ++c)
-        sum += table->corners->weight[c] * p[hairlut_corner_offset(table, c)];
-    return sum;
-}
-
-/* hairlut_axis_count of a blended group */
-HAIRLUT_INLINE int hairlut_strand_count(const hairlut_blended *table, const float *group, float t, float x)
-{
-    const int small = HAIRLUT_IS_SMALL(table->axis->columns), n = small ? HAIRLUT_SMALL_GROUP : HAIRLUT_GROUP;
+    const int small = size <= HAIRLUT_SMALL_GROUP; /* then the changes to the row above stand behind the texels */
     const float *above = group + (small ? HAIRLUT_SMALL_GROUP : table->axis->stride);
-    float from[HAIRLUT_GROUP], to[HAIRLUT_GROUP];
-    for (int k = 0; k < n; k += 4) {
-        hairlut_quad_store(from + k, hairlut_blend_quad(table, group + k));
-        hairlut_quad_store(to + k, hairlut_blend_quad(table, above + k));
+    hairlut_tally tally = hairlut_tally_zero();
+    for (int k = 0; k < size; k += 4) {
+        const hairlut_quad from = hairlut_blend_quad(table, group + k, n), to = hairlut_blend_quad(table, above + k, n);
+        const hairlut_quad change = small ? to : hairlut_quad_sub(to, from);
+        tally = hairlut_tally_at_most(tally, hairlut_quad_add(from, hairlut_quad_mul(t, change)), x);
     }
-    return hairlut_count(from, to, t, x, n);
+    return hairlut_tally_sum(tally);
 }
 
-/* hairlut_halve of blended rows */
-static inline int hairlut_strand_halve(const hairlut_blended *table, const float *groups, float t, float x)
+/* hairlut_halve of blended rows; `groups` are those of the first corner. */
+static inline int hairlut_strand_halve(const hairlut_blended *table, const float *groups, hairlut_quad t, float x)
 {
+    const int stride = table->axis->stride, n = table->nodes->count;
     int first = 0;
-    for (int n = table->axis->step / 2; n >= HAIRLUT_GROUP; n /= 2) {
-        const float *low_end = groups + first + n - 1; /* of the upper half */
-        const float from = hairlut_blend_float(table, low_end),
-                    to = hairlut_blend_float(table, low_end + table->axis->stride);
-        first += from + t * (to - from) <= x ? n : 0;
+    for (int part = table->axis->step / 2; part >= HAIRLUT_GROUP; part /= 2) {
+        const float *low_end = groups + first + part - 4; /* its last float is that of the upper half */
+        const hairlut_quad from = hairlut_blend_quad(table, low_end, n), to = hairlut_blend_quad(table, low_end + stride, n);
+        const hairlut_quad blend = hairlut_quad_add(from, hairlut_quad_mul(t, hairlut_quad_sub(to, from)));
+        first += hairlut_quad_last(blend) <= x ? part : 0;
     }
     return first;
 }
 
-/* A search as far as the first group takes it, as hairlut_search. */
+/* A search, as hairlut_search; x is within the domain. */
 typedef struct hairlut_strand_search {
     hairlut_blended table;
-    hairlut_row row;
+    const float *row; /* of the first corner */
+    hairlut_row place;
     float x;
-    int first;
+    int cell;
 } hairlut_strand_search;
 
-HAIRLUT_INLINE hairlut_strand_search hairlut_strand_begin_search(hairlut_blended table, hairlut_row row, float x)
-{
-    const hairlut_axis *axis = table.axis;
-    hairlut_strand_search search = {table, row, hairlut_axis_inside(axis, x), 0};
-    const float *rows = axis->rows + (ptrdiff_t)row.j * axis->stride;
-    search.first = axis->step * hairlut_strand_count(&table, rows, row.t, search.x);
-    return search;
-}
-
-static inline int hairlut_strand_end_search(const hairlut_strand_search *search)
-{
-    const hairlut_axis *axis = search->table.axis;
-    const float t = search->row.t, *groups = axis->rows + (ptrdiff_t)search->row.j * axis->stride + HAIRLUT_LINE;
-    int cell = search->first;
-    if (!HAIRLUT_IS_SMALL(axis->columns))
-        cell += hairlut_strand_halve(&search->table, groups + cell, t, search->x);
-    return cell + hairlut_strand_count(&search->table, groups + HAIRLUT_ROW_FLOATS(axis->columns) * cell, t, search->x);
-}
-
 /* hairlut_axis_cell of blended cells */
-static inline hairlut_quad hairlut_strand_cell(const hairlut_blended *table, int j, hairlut_quad below, hairlut_quad above,
-                                               int i, int high)
+HAIRLUT_INLINE hairlut_quad hairlut_strand_cell(const hairlut_blended *table, int j, hairlut_quad below, hairlut_quad above,
+                                                int i, int high, int n)
 {
     const unsigned column = (unsigned)i * (unsigned)table->axis->pitch;
-    const float *p = table->axis->ends[high] + column + (unsigned)j * HAIRLUT_CELL;
-    return hairlut_quad_add(hairlut_quad_mul(below, hairlut_blend_quad(table, p)),
-                            hairlut_quad_mul(above, hairlut_blend_quad(table, p + HAIRLUT_CELL)));
+    const float *p = table->axis->ends[high] + column + (unsigned)j * HAIRLUT_CELL + table->first;
+    return hairlut_quad_add(hairlut_quad_mul(below, hairlut_blend_quad(table, p, n)),
+                            hairlut_quad_mul(above, hairlut_blend_quad(table, p + HAIRLUT_CELL, n)));
 }
 
-/* hairlut_axis_find */
-static inline hairlut_found hairlut_strand_find(const hairlut_strand_search *search)
+HAIRLUT_INLINE int hairlut_strand_begin(const hairlut_strand_search *search, int n)
 {
+    const hairlut_axis *axis = search->table.axis;
+    const hairlut_quad t = hairlut_quad_all(search->place.t);
+    if (axis->columns <= 5 * HAIRLUT_SMALL_GROUP + 1) /* at most five blocks */
+        return HAIRLUT_SMALL_GROUP * hairlut_strand_count(&search->table, search->row, t, search->x, 4, n);
+    if (HAIRLUT_IS_SMALL(axis->columns))
+        return HAIRLUT_SMALL_GROUP * hairlut_strand_count(&search->table, search->row, t, search->x, HAIRLUT_SMALL_GROUP, n);
+    return axis->step * hairlut_strand_count(&search->table, search->row, t, search->x, HAIRLUT_GROUP, n);
+}
+
+HAIRLUT_INLINE void hairlut_strand_begin_search(hairlut_strand_search *search, const hairlut_blended *table,
+                                                hairlut_row place, float x)
+{
+    search->table = *table;
+    search->row = table->axis->rows + table->first + (ptrdiff_t)place.j * table->axis->stride;
+    search->place = place;
+    search->x = x;
+    search->cell = table->nodes->count == 2   ? hairlut_strand_begin(search, 2)
+                   : table->nodes->count == 1 ? hairlut_strand_begin(search, 1)
+                                              : hairlut_strand_begin(search, table->nodes->count);
+}
+
+HAIRLUT_INLINE int hairlut_strand_end(const hairlut_strand_search *search, int n)
+{
+    const hairlut_axis *axis = search->table.axis;
+    const hairlut_quad t = hairlut_quad_all(search->place.t);
+    const float *groups = search->row + HAIRLUT_LINE;
+    int cell = search->cell;
+    if (HAIRLUT_IS_SMALL(axis->columns))
+        return cell + hairlut_strand_count(&search->table, groups + 2 * cell, t, search->x, HAIRLUT_SMALL_GROUP, n);
+    cell += hairlut_strand_halve(&search->table, groups + cell, t, search->x);
+    return cell + hairlut_strand_count(&search->table, groups + cell, t, search->x, HAIRLUT_GROUP, n);
+}
+
+HAIRLUT_INLINE void hairlut_strand_end_search(hairlut_strand_search *search)
+{
+    const int count = search->table.nodes->count;
+    search->cell = count == 2   ? hairlut_strand_end(search, 2)
+                   : count == 1 ? hairlut_strand_end(search, 1)
+                                : hairlut_strand_end(search, count);
+}
+
+HAIRLUT_INLINE hairlut_found hairlut_strand_find_of(const hairlut_strand_search *search, int n)
+{
+    static const float scales[2] = {HAIRLUT_SCALE, -HAIRLUT_SCALE};
     hairlut_found found;
     const hairlut_axis *axis = search->table.axis;
-    const int i = hairlut_axis_nearer(axis, hairlut_strand_end_search(search), &found.high);
-    const float scale = found.high ? -HAIRLUT_SCALE : HAIRLUT_SCALE, t = search->row.t;
-    found.cell = hairlut_strand_cell(&search->table, search->row.j, hairlut_quad_all(scale * (1.0f - t)),
-                                     hairlut_quad_all(scale * t), i, found.high);
+    const int i = hairlut_axis_nearer(axis, search->cell, &found.high);
+    const float scale = scales[found.high], t = search->place.t;
+    found.cell = hairlut_strand_cell(&search->table, search->place.j, hairlut_quad_all(scale * (1.0f - t)),
+                                     hairlut_quad_all(scale * t), i, found.high, n);
     found.x = scale * search->x;
     found.knot = axis->knots + HAIRLUT_KNOT * i;
     return found;
+}
+
+HAIRLUT_INLINE hairlut_found hairlut_strand_find(const hairlut_strand_search *search)
+{
+    const int count = search->table.nodes->count;
+    return count == 2   ? hairlut_strand_find_of(search, 2)
+           : count == 1 ? hairlut_strand_find_of(search, 1)
+                        : hairlut_strand_find_of(search, count);
 }
 
 /* hairlut_axis_find_place */
@@ -118,7 +151,7 @@ static inline hairlut_placed hairlut_strand_find_place(const hairlut_blended *ta
 {
     const hairlut_place place = hairlut_axis_place(table->axis, u);
     const hairlut_quad t = hairlut_quad_all(row.t), below = hairlut_quad_sub(hairlut_quad_all(1.0f), t);
-    const hairlut_placed placed = {hairlut_strand_cell(table, row.j, below, t, place.i, place.high),
+    const hairlut_placed placed = {hairlut_strand_cell(table, row.j, below, t, place.i, place.high, table->nodes->count),
                                    hairlut_quad_load(table->axis->knots + HAIRLUT_KNOT * place.i), place.m};
     return placed;
 }

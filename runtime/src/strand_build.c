@@ -92,13 +92,39 @@ int hairlut_add_grid(hairlut_strands *strands, const hairlut_parameter_nodes *ax
     int g = 0;
     memset(&grid, 0, sizeof grid);
     grid.axis_count = axis_count;
-    for (int a = 0; a < axis_count; ++a)
-        grid.scale[a] = add_scale(strands, axis_at(axes, a), memory);
+    for (int a = 0, stride = 1; a < axis_count; ++a) {
+        const hairlut_parameter_nodes *axis = axis_at(axes, axis_count - 1 - a);
+        grid.scale[a] = add_scale(strands, axis, memory);
+        grid.stride[a] = stride;
+        stride *= axis->count;
+    }
     while (g < strands->grid_count && memcmp(&strands->grids[g], &grid, sizeof grid) != 0)
         ++g;
     strands->grids[g] = grid;
     strands->grid_count += g == strands->grid_count;
     return g;
+}
+
+hairlut_spacing hairlut_space(const hairlut_strands *strands, int number, ptrdiff_t pitch)
+{
+    const hairlut_node_grid *grid = &strands->grids[number];
+    hairlut_spacing spacing;
+    memset(&spacing, 0, sizeof spacing);
+    spacing.grid = number;
+    spacing.count = 1 << grid->axis_count;
+    spacing.pitch = pitch;
+    for (int c = 0; c < spacing.count; ++c)
+        for (int a = 0; a < grid->axis_count; ++a)
+            spacing.corner[c] += (c >> a & 1) * grid->stride[a] * pitch;
+    return spacing;
+}
+
+hairlut_corners hairlut_only_corner(void)
+{
+    hairlut_corners corners;
+    corners.node = 0;
+    corners.weight[0] = hairlut_quad_all(1.0f);
+    return corners;
 }
 
 hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int grid)
@@ -107,7 +133,7 @@ hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int gri
     hairlut_corners corners;
     for (int s = 0; s < strands->scale_count; ++s)
         places[s] = hairlut_scale_place(&strands->scales[s], strands->standard[strands->scales[s].parameter]);
-    hairlut_corners_of(strands, &strands->grids[grid], places, &corners);
+    hairlut_corners_of(&strands->grids[grid], places, strands->grids[grid].axis_count, &corners);
     return corners;
 }
 
@@ -149,12 +175,14 @@ static int32_t fixed_turn(double turn)
     return fixed >= 2147483648.0 ? INT32_MIN : (int32_t)fixed;
 }
 
-void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *desc, int lobe_count, float *memory)
+void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *desc, int lobe_count, int grid, float *memory)
 {
     hairlut_four *four = (hairlut_four *)memory;
     const size_t nodes = hairlut_node_count(desc->axes, desc->axis_count);
     strands->fours = four;
     strands->four_count = (lobe_count + 3) / 4;
+    strands->mixture =
+        hairlut_space(strands, grid, (ptrdiff_t)strands->four_count * desc->theta_r_count * desc->offset_count);
     for (size_t node = 0; node < nodes; ++node)
         for (int j = 0; j < desc->theta_r_count; ++j)
             for (int o = 0; o < desc->offset_count; ++o, four += strands->four_count)
@@ -162,5 +190,7 @@ void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *d
                     const int exists = k < lobe_count;
                     four[k / 4].share[k % 4] = exists ? (float)hairlut_share_at(desc, lobe_count, k, node, j, o) : 0.0f;
                     four[k / 4].turn[k % 4] = exists ? fixed_turn(hairlut_turn_at(desc, k, node, j, o)) : 0;
+                    strands->turns_vary |=
+                        four[k / 4].turn[k % 4] != four[k / 4 - (ptrdiff_t)node * strands->mixture.pitch].turn[k % 4];
                 }
 }

@@ -8,11 +8,6 @@
 #include "strand.h"
 #include "turns.h"
 
-/* Four lobes at one node of theta_r and the offset; turns in units of 2 pi. */
-typedef struct hairlut_four_blend {
-    hairlut_quad share, turn;
-} hairlut_four_blend;
-
 /* wrap to [-1/2, 1/2) of |d| up to 2^21; adding 3 2^22 rounds to an integer, half of the ties upwards. */
 static inline hairlut_quad hairlut_wrap_turns(hairlut_quad d)
 {
@@ -33,48 +28,67 @@ static inline hairlut_quad hairlut_blend_linearly(hairlut_quad a, hairlut_quad b
     return hairlut_quad_add(hairlut_quad_mul(rest, a), hairlut_quad_mul(t, b));
 }
 
-/* Over the corners: `four` is that of the parameters' node 0, pitch the fours from there to the next node. */
-HAIRLUT_INLINE hairlut_four_blend hairlut_blend_four(const hairlut_four *four, ptrdiff_t pitch,
-                                                     const hairlut_corners *corners)
+/* Four lobes at the four nodes of theta_r and the offset around a place: at the lower and the upper theta_r of the lower offset,
+ * then of the upper one. Turns in units of 2 pi / 2^32. */
+typedef struct hairlut_four_nodes {
+    hairlut_quad share[4], turn[4];
+} hairlut_four_nodes;
+
+/* Blended over the corners of the parameters; `four` is that of the first, at the first node, and the others are so many fours
+ * from there. */
+HAIRLUT_INLINE hairlut_four_nodes hairlut_blend_fours(const hairlut_strands *strands, const hairlut_corners *corners,
+                                                      const hairlut_four *four, const ptrdiff_t node[4])
 {
-    const hairlut_four *low = four + corners->node[0] * pitch;
-    const hairlut_turns turn = hairlut_turns_load(low->turn);
-    hairlut_quad share = hairlut_quad_mul(hairlut_quad_all(corners->weight[0]), hairlut_quad_load(low->share));
-    hairlut_quad arc = hairlut_turns_float(turn);
-    for (int c = 1; c < corners->count; ++c) {
-        const hairlut_four *here = four + corners->node[c] * pitch;
-        const hairlut_quad weight = hairlut_quad_all(corners->weight[c]);
-        const hairlut_quad step = hairlut_turns_float(hairlut_turns_sub(hairlut_turns_load(here->turn), turn));
-        share = hairlut_quad_add(share, hairlut_quad_mul(weight, hairlut_quad_load(here->share)));
-        arc = hairlut_quad_add(arc, hairlut_quad_mul(weight, step));
+    hairlut_four_nodes blend;
+    hairlut_turns first[4];
+    HAIRLUT_UNROLLED
+    for (int l = 0; l < 4; ++l) {
+        first[l] = hairlut_turns_load(four[node[l]].turn);
+        blend.share[l] = hairlut_quad_mul(corners->weight[0], hairlut_quad_load(four[node[l]].share));
+        blend.turn[l] = hairlut_turns_float(first[l]);
     }
-    const hairlut_four_blend blend = {share, hairlut_quad_mul(hairlut_quad_all(2.32830644e-10f), arc)}; /* 2^-32 */
+    for (int c = 1; c < strands->mixture.count; ++c) {
+        const hairlut_four *here = four + strands->mixture.corner[c];
+        const hairlut_quad weight = corners->weight[c];
+        HAIRLUT_UNROLLED
+        for (int l = 0; l < 4; ++l)
+            blend.share[l] =
+                hairlut_quad_add(blend.share[l], hairlut_quad_mul(weight, hairlut_quad_load(here[node[l]].share)));
+        if (!strands->turns_vary)
+            continue;
+        HAIRLUT_UNROLLED
+        for (int l = 0; l < 4; ++l) {
+            const hairlut_turns arc = hairlut_turns_sub(hairlut_turns_load(here[node[l]].turn), first[l]);
+            blend.turn[l] = hairlut_quad_add(blend.turn[l], hairlut_quad_mul(weight, hairlut_turns_float(arc)));
+        }
+    }
     return blend;
 }
 
 /* The shares and turns of the model at the strand; NaN in h counts as -1. */
-static inline void hairlut_strand_mixture(const hairlut_model *model, const hairlut_corners *corners, float theta_r, float h,
-                                          hairlut_mix *mix)
+HAIRLUT_INLINE void hairlut_strand_mixture(const hairlut_model *model, const hairlut_corners *corners, float theta_r,
+                                           float h, hairlut_mix *mix)
 {
     const hairlut_mixture *m = &model->mixture;
     const hairlut_strands *strands = model->strands;
     const hairlut_row row = hairlut_mixture_row(m->theta_r, m->rows, theta_r);
     const hairlut_row column = hairlut_mixture_row(m->arc, m->columns, hairlut_asin(m->mirrored ? fabsf(h) : h));
-    const ptrdiff_t node = strands->four_count, line = node * m->columns, pitch = line * m->rows;
-    const ptrdiff_t above = m->rows > 1 ? line : 0, beside = m->columns > 1 ? node : 0;
-    const hairlut_quad t = hairlut_quad_all(row.t), s = hairlut_quad_all(column.t), turn = hairlut_quad_all(hairlut_two_pi);
-    const hairlut_four *four = strands->fours + row.j * line + column.j * node;
+    const ptrdiff_t beside = strands->four_count, above = beside * m->columns;
+    const ptrdiff_t up = m->rows > 1 ? above : 0, along = m->columns > 1 ? beside : 0, node[4] = {0, up, along, up + along};
+    const hairlut_quad t = hairlut_quad_all(row.t), s = hairlut_quad_all(column.t),
+                       unit = hairlut_quad_all(2.32830644e-10f); /* 2^-32 */
+    const hairlut_four *four = strands->fours + corners->node * strands->mixture.pitch + row.j * above + column.j * beside;
     for (int q = 0; q < strands->four_count; ++q, ++four) {
-        const hairlut_four_blend low = hairlut_blend_four(four, pitch, corners),
-                                 low_above = hairlut_blend_four(four + above, pitch, corners),
-                                 high = hairlut_blend_four(four + beside, pitch, corners),
-                                 high_above = hairlut_blend_four(four + above + beside, pitch, corners);
-        const hairlut_quad share = hairlut_blend_linearly(hairlut_blend_linearly(low.share, low_above.share, t),
-                                                          hairlut_blend_linearly(high.share, high_above.share, t), s);
-        const hairlut_quad arc = hairlut_blend_arcs(hairlut_blend_arcs(low.turn, low_above.turn, t),
-                                                    hairlut_blend_arcs(high.turn, high_above.turn, t), s);
+        const hairlut_four_nodes b = hairlut_blend_fours(strands, corners, four, node);
+        const hairlut_quad share = hairlut_blend_linearly(hairlut_blend_linearly(b.share[0], b.share[1], t),
+                                                          hairlut_blend_linearly(b.share[2], b.share[3], t), s);
+        hairlut_quad turn[4];
+        for (int l = 0; l < 4; ++l)
+            turn[l] = hairlut_quad_mul(unit, b.turn[l]);
+        const hairlut_quad arc =
+            hairlut_blend_arcs(hairlut_blend_arcs(turn[0], turn[1], t), hairlut_blend_arcs(turn[2], turn[3], t), s);
         hairlut_quad_store(mix->share + 4 * q, share);
-        hairlut_quad_store(mix->turn + 4 * q, hairlut_quad_mul(turn, hairlut_wrap_turns(arc)));
+        hairlut_quad_store(mix->turn + 4 * q, hairlut_quad_mul(hairlut_quad_all(hairlut_two_pi), hairlut_wrap_turns(arc)));
     }
 }
 

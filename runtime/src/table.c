@@ -233,19 +233,21 @@ void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *t, float *memor
 }
 
 /* All that is stored is linear in the texels but for the bounds of slopes, which are those of the nodes' own cells. */
-static void blend_floats(float *blend, size_t count, ptrdiff_t pitch, const hairlut_corners *corners)
+static void blend_floats(float *blend, size_t count, const hairlut_spacing *nodes, const hairlut_corners *corners)
 {
+    const float *first = blend + (corners->node + 1) * nodes->pitch;
     for (size_t k = 0; k < count; ++k) {
         double sum = 0.0;
-        for (int c = 0; c < corners->count; ++c)
-            sum += (double)corners->weight[c] * (double)blend[k + (size_t)((corners->node[c] + 1) * pitch)];
+        for (int c = 0; c < nodes->count; ++c)
+            sum += (double)hairlut_quad_first(corners->weight[c]) * (double)first[(ptrdiff_t)k + nodes->corner[c]];
         if (blend[k] != HAIRLUT_NO_TEXEL)
             blend[k] = (float)sum;
     }
 }
 
-void hairlut_blend_axis(const hairlut_axis *axis, float *memory, ptrdiff_t pitch, const hairlut_corners *corners)
+void hairlut_blend_axis(const hairlut_axis *axis, float *memory, const hairlut_spacing *nodes,
+                        const hairlut_corners *corners)
 {
-    blend_floats(memory, (size_t)HAIRLUT_STORED(axis->columns, axis->height), pitch, corners);
-    blend_floats(memory + (axis->ends[0] - axis->rows), (size_t)HAIRLUT_CELLS(axis->columns, axis->height), pitch, corners);
+    blend_floats(memory, (size_t)HAIRLUT_STORED(axis->columns, axis->height), nodes, corners);
+    blend_floats(memory + (axis->ends[0] - axis->rows), (size_t)HAIRLUT_CELLS(axis->columns, axis->height), nodes, corners);
 }

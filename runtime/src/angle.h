@@ -41,20 +41,14 @@ static inline float hairlut_wrap(float phi, float low)
     return r >= low && r < low + hairlut_two_pi ? r : low;
 }
 
-/* The same for phi from [low, low + 4 pi): at most one turn is taken away. No branch, as half of all azimuths need it. */
-static inline float hairlut_wrap_down(float phi, float low)
-{
-    const float high = low + hairlut_two_pi, n = 0.5f + copysignf(0.5f, phi - high);
-    const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
-    return r < high ? r : low;
-}
+/* The same for |phi| <= 8 pi, with a branch for few: hairlut_wrap corrects what lies beside an end of the range. Turns are rounded
+ * down by adding 1.5 * 2^23, from where on floats are integers, less a half; a little more than that, as ties are to go up. */
+static const float hairlut_integers = 12582912.0f, hairlut_half_down = -0.4999998f;
 
-/* The same for phi from [low - 2 pi, low + 2 pi): at most one turn is added. */
-static inline float hairlut_wrap_up(float phi, float low)
+static inline float hairlut_wrap_near(float phi, float low)
 {
-    const float high = low + hairlut_two_pi, n = 0.5f - copysignf(0.5f, phi - low);
-    const float r = (phi + n * hairlut_two_pi_high) + n * hairlut_two_pi_low;
-    return r > low && r < high ? r : low;
+    const float n = ((phi - low) * hairlut_inverse_two_pi + hairlut_half_down + hairlut_integers) - hairlut_integers;
+    return hairlut_wrap((phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low, low);
 }
 
 /* cos(theta) for |theta| <= pi/2 as the sine of the angle to the pole: 2.5 ulp up to the pole itself, where theta's

@@ -3,6 +3,7 @@
 #ifndef HAIRLUT_BATCH_H
 #define HAIRLUT_BATCH_H
 
+#include "cpu.h"
 #include "hairlut.h"
 #include "platform.h"
 
@@ -12,9 +13,21 @@
 #define HAIRLUT_BATCH_NEON 1
 #endif
 
+/* Those of a set of kernels for one direction. A model has the lobe. */
+typedef struct hairlut_one {
+    hairlut_sample (*sample_lobe)(const hairlut_model *model, int lobe, float theta_r, float phi_r, float u_theta,
+                                  float u_phi);
+    float (*pdf_lobe)(const hairlut_model *model, int lobe, float theta_r, float phi_r, float theta_i, float phi_i);
+    hairlut_sample (*sample_hair)(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset,
+                                  float u_lobe, float u_theta, float u_phi);
+    float (*pdf_hair)(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset,
+                      float theta_i, float phi_i);
+} hairlut_one;
+
 /* One set of kernels; each member is a function of hairlut.h. */
 typedef struct hairlut_batch {
     const char *name;
+    hairlut_one one;
     void (*sample_lobe)(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                         const float *u_theta, const float *u_phi, hairlut_samples out);
     void (*pdf_lobe)(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
@@ -52,6 +65,18 @@ extern const hairlut_batch hairlut_batch_avx2;
 #ifdef HAIRLUT_BATCH_NEON
 extern const hairlut_batch hairlut_batch_neon;
 #endif
+
+/* The widest set that this processor runs: what the functions of hairlut.h call. */
+static inline const hairlut_batch *hairlut_best_kernels(void)
+{
+#if defined(HAIRLUT_BATCH_X86)
+    return hairlut_this_cpu() == HAIRLUT_CPU_AVX2 ? &hairlut_batch_avx2 : &hairlut_batch_portable;
+#elif defined(HAIRLUT_BATCH_NEON)
+    return &hairlut_batch_neon;
+#else
+    return &hairlut_batch_portable;
+#endif
+}
 
 /* The sets that this processor runs, narrowest first: index 0 is the portable one. NULL from the number of sets on. */
 const hairlut_batch *hairlut_batch_level(int level);

@@ -24,21 +24,12 @@ static inline real wrap(real phi, float low)
     return choose(inside, phi, less_turns(phi, turns, low));
 }
 
-/* hairlut_wrap_down */
-static inline real wrap_down(real phi, float low)
+/* hairlut_wrap_near */
+static inline real wrap_near(real phi, float low)
 {
-    const real high = all(low + hairlut_two_pi);
-    const real turned = sub(sub(phi, all(hairlut_two_pi_high)), all(hairlut_two_pi_low));
-    const real r = choose(at_least(phi, high), turned, phi);
-    return choose(greater(high, r), r, all(low));
-}
-
-/* hairlut_wrap_up */
-static inline real wrap_up(real phi, float low)
-{
-    const real turned = add(add(phi, all(hairlut_two_pi_high)), all(hairlut_two_pi_low));
-    const real r = choose(greater(all(low), phi), turned, phi);
-    return choose(both(greater(r, all(low)), greater(all(low + hairlut_two_pi), r)), r, all(low));
+    const real turns = add(mul(sub(phi, all(low)), all(hairlut_inverse_two_pi)), all(hairlut_half_down));
+    const real n = sub(add(turns, all(hairlut_integers)), all(hairlut_integers));
+    return wrap(sub(sub(phi, mul(n, all(hairlut_two_pi_high))), mul(n, all(hairlut_two_pi_low))), low);
 }
 
 /* hairlut_cos */

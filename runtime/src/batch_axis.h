@@ -14,12 +14,12 @@ enum { BLOCK = 256, ROOM = BLOCK + LANES };
 typedef struct axis_samples {
     int at[BLOCK];   /* the offset of the cell */
     int knot[BLOCK]; /* the offset of its knot */
-    float t[BLOCK];  /* the weight of the row above; from fetch_samples on: the blended cell's w */
+    float t[BLOCK];  /* the weight of the row above; from fetch_samples on: the blended cell's w, scaled, as x0, d0 and d1 */
     float m[BLOCK];  /* of hairlut_place; from fetch_samples on: (m - u0) / h */
-    float x0[BLOCK]; /* of the blended cell, as d0 and d1 */
+    float x0[BLOCK];
     float d0[BLOCK];
     float d1[BLOCK];
-    float rate[BLOCK]; /* 1 / h */
+    float rate[BLOCK]; /* 1 / h, over the scale */
 } axis_samples;
 
 /* Directions on an axis. */
@@ -27,7 +27,6 @@ typedef struct axis_searches {
     int j[BLOCK];    /* the row */
     int cell[BLOCK]; /* as far as it is known, counted from the low end */
     int at[BLOCK];   /* where to read on: an offset among the rows, then among the cells */
-    int knot[BLOCK]; /* the offset of the cell's knot */
     float t[BLOCK];  /* the weight of the row above; from fetch_searches on: the blended cell's w, scaled, as d0 and d1 */
     float x[BLOCK];  /* the angle; from fetch_searches on: its distance from the cell's nearer end, scaled */
     float d0[BLOCK];
@@ -79,7 +78,7 @@ static inline void place(const hairlut_axis *axis, size_t n, const float *theta_
     }
 }
 
-/* hairlut_count, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0 */
+/* How many texels of a group are at most x, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0 */
 HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t n, const axis_searches *q, int size,
                           int *counts)
 {
@@ -90,7 +89,10 @@ HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t 
 #else
     HAIRLUT_UNROLLED
     for (size_t k = 0; k < n; ++k)
-        counts[k] = hairlut_count(groups + q->at[k], above + q->at[k], q->t[k], q->x[k], size);
+        counts[k] = (int)(size == HAIRLUT_SMALL_GROUP
+                              ? hairlut_count_eight(groups + q->at[k], hairlut_quad_all(q->t[k]), hairlut_quad_all(q->x[k]))
+                              : hairlut_axis_count_large(groups + q->at[k], above + q->at[k], hairlut_quad_all(q->t[k]),
+                                                         hairlut_quad_all(q->x[k])));
 #endif
 }
 
@@ -111,22 +113,24 @@ static inline void halve_blocks(const hairlut_axis *axis, size_t n, axis_searche
 {
     const float *groups = axis->rows + HAIRLUT_LINE;
     for (size_t k = 0; axis->step > HAIRLUT_GROUP && k < n; ++k) {
-        const int halved = hairlut_halve(groups + q->at[k], axis->stride, q->t[k], q->x[k], axis->step);
+        const int halved = (int)hairlut_halve(groups + q->at[k], axis->stride, q->t[k], q->x[k], (unsigned)axis->step);
         q->cell[k] += halved;
         q->at[k] += halved;
     }
 }
 
-/* hairlut_axis_end_search from the count on, and where to read the cell: hairlut_axis_nearer */
+/* The last count, and where to read the cell: hairlut_axis_find */
 HAIRLUT_INLINE void search_groups(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
 {
     int counts[BLOCK];
     count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
     for (size_t s = 0; s < n; s += LANES) {
-        const whole cell = iadd(iload(q->cell + s), iload(counts + s)), mirrored = isub(iall(axis->columns - 2), cell);
-        const whole i = ismaller(cell, mirrored);
-        istore(q->at + s, cell_offset(axis, iload(q->j + s), i, igreater(cell, mirrored)));
-        istore(q->knot + s, imul(i, iall(HAIRLUT_KNOT)));
+        whole offset;
+        real h;
+        istore(q->cell + s, iadd(iload(q->cell + s), iload(counts + s)));
+        gather_links(axis->links, q->cell + s, &offset, &h);
+        istore(q->at + s, iadd(offset, imul(iload(q->j + s), iall(HAIRLUT_CELL))));
+        store(q->width + s, h);
     }
 }
 
@@ -137,9 +141,10 @@ static inline void search_large(const hairlut_axis *axis, size_t n, axis_searche
     search_groups(axis, n, q, HAIRLUT_GROUP);
 }
 
-/* hairlut_axis_cell */
-static inline cells load_cells(const hairlut_axis *axis, const int *at, real below, real above)
+/* hairlut_axis_blend; t is that of hairlut_row */
+static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
 {
+    const real scale = all(HAIRLUT_SCALE), below = mul(scale, sub(all(1.0f), t)), above = mul(scale, t);
     real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
     gather4(axis->ends[0], at, p);
     gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
@@ -152,11 +157,10 @@ static inline void fetch_samples(const hairlut_axis *axis, size_t n, axis_sample
 {
     for (size_t s = 0; s < n; s += LANES) {
         real knot[HAIRLUT_KNOT];
-        const real t = load(q->t + s);
-        const cells cell = load_cells(axis, q->at + s, sub(all(1.0f), t), t);
+        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
         gather4(axis->knots, q->knot + s, knot);
         store(q->m + s, mul(sub(load(q->m + s), knot[0]), knot[1]));
-        store(q->rate + s, knot[1]);
+        store(q->rate + s, knot[3]);
         store(q->x0 + s, cell.x0);
         store(q->d0 + s, cell.d0);
         store(q->t + s, cell.w);
@@ -173,33 +177,29 @@ static inline void search_small(const hairlut_axis *axis, size_t n, axis_searche
 static inline void fetch_searches(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     for (size_t s = 0; s < n; s += LANES) {
-        real knot[HAIRLUT_KNOT];
-        const whole high = iall((int)(axis->ends[1] - axis->ends[0]) - 1);
-        const real t = load(q->t + s),
-                   scale = choose(igreater(iload(q->at + s), high), all(-HAIRLUT_SCALE), all(HAIRLUT_SCALE));
-        const cells cell = load_cells(axis, q->at + s, mul(scale, sub(all(1.0f), t)), mul(scale, t));
-        gather4(axis->knots, q->knot + s, knot);
-        store(q->x + s, clamp(sub(mul(scale, load(q->x + s)), cell.x0), all(0.0f), cell.w));
-        store(q->width + s, knot[2]);
-        store(q->d0 + s, cell.d0);
-        store(q->t + s, cell.w);
-        store(q->d1 + s, cell.d1);
+        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
+        const real w = magnitude(cell.w);
+        const real beyond = flipped(sub(mul(load(q->x + s), all(HAIRLUT_SCALE)), cell.x0), cell.w);
+        store(q->x + s, clamp(beyond, all(0.0f), w));
+        store(q->d0 + s, magnitude(cell.d0));
+        store(q->t + s, w);
+        store(q->d1 + s, magnitude(cell.d1));
     }
 }
 
 /* hairlut_draw_two, of an axis, of samples s .. s+LANES-1 that were placed and fetched */
 static inline real draw(const axis_samples *q, size_t s, real *slope)
 {
-    const real along = load(q->m + s), w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s);
+    const real along = load(q->m + s), w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), twice = add(w, w);
     const real xi = larger(along, all(0.0f)), rest = larger(sub(all(1.0f), along), all(0.0f));
     const real xi2 = mul(xi, xi), rest2 = mul(rest, rest), p = mul(xi, rest);
-    const real ratio = over(w, add(mul(w, add(xi2, rest2)), mul(add(d0, d1), p)));
-    const real bent = add(add(mul(d1, xi2), mul(mul(all(2.0f), w), p)), mul(d0, rest2));
+    const real ratio = over(w, add(w, mul(sub(add(d0, d1), twice), p)));
+    const real bent = add(add(mul(d1, xi2), mul(d0, rest2)), mul(twice, p));
     *slope = magnitude(mul(mul(mul(ratio, ratio), bent), load(q->rate + s)));
-    return add(load(q->x0 + s), mul(ratio, add(mul(w, xi2), mul(d0, p))));
+    return mul(add(load(q->x0 + s), mul(ratio, add(mul(w, xi2), mul(d0, p)))), all(1.0f / HAIRLUT_SCALE));
 }
 
-/* hairlut_axis_begin_search, but for the count. Returns hairlut_axis_contains. */
+/* Begins a search. Returns whether the domain contains x. */
 static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, axis_searches *q, size_t s)
 {
     const real low = all(axis->low), high = all(axis->high);
@@ -226,14 +226,12 @@ static inline void end_search(const hairlut_axis *axis, size_t n, axis_searches 
 static inline real inverse(const axis_searches *q, size_t s, real *root_of)
 {
     const real w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), from = load(q->x + s), to = sub(w, from);
-    const real wx = mul(w, from), wz = mul(w, to);
+    const real twice = add(w, w), wx = mul(twice, from), wz = mul(twice, to), h = load(q->width + s);
     const real balance = sub(mul(d0, to), mul(d1, from));
-    *root_of = root(add(mul(balance, balance), mul(all(4.0f), mul(wx, wz))));
-    const real sum = add(*root_of, magnitude(balance));
-    const real side = mul(all(2.0f), by_sign(balance, wz, wx)), unit = over(all(1.0f), add(side, sum));
-    const real part = mul(side, unit), rest = mul(sum, unit);
-    const real bend = add(mul(w, add(mul(part, part), mul(rest, rest))), mul(add(d0, d1), mul(part, rest)));
-    return mul(load(q->width + s), bend);
+    *root_of = root(add(mul(balance, balance), mul(wx, wz)));
+    const real sum = add(*root_of, magnitude(balance)), side = by_sign(balance, wz, wx), of_both = add(side, sum);
+    const real product = over(mul(side, sum), mul(of_both, of_both));
+    return add(mul(h, w), mul(mul(h, sub(add(d0, d1), twice)), product));
 }
 
 #endif

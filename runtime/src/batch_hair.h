@@ -33,15 +33,15 @@ static inline real side_at(const hairlut_model *model, const mixture_block *m, s
     return model->mixture.mirrored ? load(m->side + s) : all(1.0f);
 }
 
-/* hairlut_turned_relative, of samples s .. s+LANES-1 */
-static inline real turned_relative(const hairlut_model *model, int k, const directions *d, const mixture_block *m, size_t s)
+static inline real turn_at(const hairlut_model *model, const mixture_block *m, int k, size_t s)
 {
-    const hairlut_mixture *mixture = &model->mixture;
-    const real relative = relative_azimuth(model->lobes[k].azimuth, load(d->r + s), load(d->i + s));
-    if (!mixture->turned && !mixture->mirrored)
-        return relative;
-    const real turn = mixture->turned ? load(m->turn[k] + s) : all(0.0f);
-    return wrap(sub(mul(side_at(model, m, s), relative), turn), 0.0f);
+    return model->mixture.turned ? load(m->turn[k] + s) : all(0.0f);
+}
+
+/* The azimuths by which lobe k's table is read for directions s .. s+LANES-1 */
+static inline real azimuth_of(const hairlut_model *model, int k, const directions *d, const mixture_block *m, size_t s)
+{
+    return table_azimuth(&model->lobes[k], load(d->r + s), load(d->i + s), turn_at(model, m, k, s), side_at(model, m, s));
 }
 
 /* The density of lobe k of directions from .. from+n-1, to the same places of pdf. What is written beyond, up to a whole vector,
@@ -52,7 +52,7 @@ static inline void range_density(const hairlut_model *model, int k, const direct
     float azimuth[BLOCK];
     const size_t padded = whole_vectors(n);
     for (size_t s = 0; s < padded && !model->lobes[k].uniform; s += LANES)
-        store(azimuth + s, turned_relative(model, k, d, m, from + s));
+        store(azimuth + s, azimuth_of(model, k, d, m, from + s));
     lobe_density(&model->lobes[k], padded, d->theta_r + from, d->theta_i + from, azimuth, pdf + from);
 }
 
@@ -64,7 +64,7 @@ static inline void list_density(const hairlut_model *model, int k, const directi
     int list[BLOCK];
     size_t count = 0;
     for (size_t s = 0; s < n; s += LANES)
-        store(azimuth + s, model->lobes[k].uniform ? all(0.0f) : turned_relative(model, k, d, m, s));
+        store(azimuth + s, model->lobes[k].uniform ? all(0.0f) : azimuth_of(model, k, d, m, s));
     for (size_t s = 0; s < n; ++s) {
         list[count] = (int)s;
         count += m->weight[k][s] > 0.0f && (s < from || s >= to);
@@ -87,13 +87,11 @@ typedef struct ranges {
     size_t first[HAIRLUT_MAX_LOBES + 1];
 } ranges;
 
-/* Adds weight * density over the lobes to sum. Those that drew a lobe have its density in `drawn`; NULL: none drew any. */
+/* Adds weight * density over the lobes, but for the lobe that a sample drew; `own` is NULL where none drew any. */
 static inline void add_densities(const hairlut_model *model, const directions *d, const mixture_block *m, size_t n,
-                                 const ranges *own, const float *drawn, float *sum)
+                                 const ranges *own, float *sum)
 {
     float pdf[ROOM];
-    for (size_t s = 0; s < n; s += LANES)
-        store(sum + s, all(0.0f));
     for (int k = 0; k < model->lobe_count; ++k) {
         const size_t from = own ? own->first[k] : 0, to = own ? own->first[k + 1] : 0;
         if (!m->some[k])
@@ -107,7 +105,7 @@ static inline void add_densities(const hairlut_model *model, const directions *d
                 range_density(model, k, d, m, to, n - to, pdf);
         }
         for (size_t s = from; s < to; ++s)
-            pdf[s] = drawn[s];
+            pdf[s] = 0.0f;
         for (size_t s = 0; s < n; s += LANES)
             store(sum + s, add(load(sum + s), mul(weight_at(model, m, k, s), load(pdf + s))));
     }
@@ -142,9 +140,10 @@ static inline void pdf_hair_block(const hairlut_model *model, size_t n, const ha
         store(d.r + s, wrap(phi_r, -hairlut_pi));
         store(d.theta_i + s, theta_i);
         store(d.i + s, wrap(phi_i, -hairlut_pi));
+        store(sum + s, all(0.0f));
     }
     sum_up(model, n, &m);
-    add_densities(model, &d, &m, n, NULL, NULL, sum);
+    add_densities(model, &d, &m, n, NULL, sum);
     for (size_t s = 0; s < n; s += LANES)
         store(out + s, choose(greater(load(m.valid + s), all(0.0f)), load(sum + s), all(0.0f)));
 }
@@ -224,28 +223,23 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
         reorder_in_place(m->side, order, n);
 }
 
-/* hairlut_turned_incident, of samples s .. s+LANES-1 */
-static inline real turned_incident(const hairlut_model *model, int k, const mixture_block *m, real r, real x, size_t s)
-{
-    const hairlut_mixture *mixture = &model->mixture;
-    const real turn = mixture->turned ? load(m->turn[k] + s) : all(0.0f);
-    const real relative = mul(side_at(model, m, s), add(x, turn));
-    return wrap(incident(model->lobes[k].azimuth, r, relative), -hairlut_pi);
-}
-
-/* What lobe k draws for its range of the sorted samples. Beyond its end, up to a whole vector, the next lobe writes again. */
+/* What lobe k draws for its range of the sorted samples, and weight * density. Beyond its end, up to a whole vector, the next lobe writes again. */
 static inline void draw_range(const hairlut_model *model, int k, const mixture_block *m, const numbers_drawn *u, size_t from,
-                              size_t to, directions *d, float *drawn, float *cosines)
+                              size_t to, directions *d, float *pdf, float *cosines)
 {
     const hairlut_lobe *lobe = &model->lobes[k];
     float theta_i[BLOCK], azimuth[BLOCK];
     const size_t padded = whole_vectors(to - from);
-    draw_lobe(lobe, padded, d->theta_r + from, u->theta + from, u->phi + from, theta_i, azimuth, drawn + from);
+    draw_lobe(lobe, padded, d->theta_r + from, u->theta + from, u->phi + from, theta_i, azimuth, pdf + from);
     for (size_t s = 0; s < padded; s += LANES) {
         const real theta = clamp(load(theta_i + s), all(lobe->theta.low), all(lobe->theta.high)), x = load(azimuth + s);
+        store(pdf + from + s, mul(weight_at(model, m, k, from + s), load(pdf + from + s)));
         store(d->theta_i + from + s, theta);
         store(cosines + from + s, cosine(theta));
-        store(d->i + from + s, lobe->uniform ? x : turned_incident(model, k, m, load(d->r + from + s), x, from + s));
+        store(d->i + from + s, lobe->uniform
+                                   ? x
+                                   : incident_azimuth(lobe, load(d->r + from + s), x, turn_at(model, m, k, from + s),
+                                                      side_at(model, m, from + s)));
     }
 }
 
@@ -268,13 +262,15 @@ static inline void sample_hair_block(const hairlut_model *model, size_t n, const
     mixture_block m;
     ranges own;
     int order[ROOM];
-    float drawn[ROOM], cosines[ROOM], pdf[BLOCK], solid[BLOCK];
+    float cosines[ROOM], pdf[ROOM], solid[BLOCK];
     prepare(model, n, in, &m, &d, &u, &own, order);
+    for (size_t s = 0; s < n; s += LANES)
+        store(pdf + s, all(0.0f)); /* so that compilers see that all of it is set */
     for (int k = 0; k < model->lobe_count; ++k)
         if (own.first[k] < own.first[k + 1])
-            draw_range(model, k, &m, &u, own.first[k], own.first[k + 1], &d, drawn, cosines);
+            draw_range(model, k, &m, &u, own.first[k], own.first[k + 1], &d, pdf, cosines);
     end_directions(&d, &m, n);
-    add_densities(model, &d, &m, n, &own, drawn, pdf);
+    add_densities(model, &d, &m, n, &own, pdf);
     for (size_t s = 0; s < n; s += LANES)
         store(solid + s, over(load(pdf + s), load(cosines + s)));
     restore_order(out.theta_i, d.theta_i, order, n);

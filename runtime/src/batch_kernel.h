@@ -5,11 +5,13 @@
  *   smaller(a, b) = a < b ? a : b and larger(a, b) = a > b ? a : b, so that NaN in a gives b
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
+ *   flipped(a, s)   a, negated where s's sign bit is set
  *   by_sign(a, n, p)  n where a's sign bit is set, else p
  *   every(m)        whether all lanes are true
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
- *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k]
+ *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k], at[l] a multiple of 4
+ *   gather_links(links, at, offset, h)  those of links[at[l]] in lane l
  *   HAIRLUT_COUNTS(groups, above, at, t, x, n)  may be defined: lane l has the count of groups and above + at[l], t[l], x[l]
  *
  * Every formula repeats the scalar one operation by operation, without fused multiply-add: that makes the results equal bit

@@ -32,7 +32,7 @@ static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *th
     }
 }
 
-/* hairlut_lobe_begin_search and hairlut_lobe_end_search. azimuth: relative; not read where it is uniform. */
+/* hairlut_densities, of a lobe. azimuth: relative; not read where it is uniform. */
 static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *theta_i,
                                 const float *azimuth, float *pdf)
 {
@@ -52,7 +52,7 @@ static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float 
         real theta_root, phi_root;
         const real theta_bend = inverse(&theta, s, &theta_root), known = load(contains + s);
         if (lobe->uniform) {
-            store(pdf + s, over(mul(mul(known, all(hairlut_inverse_two_pi)), theta_bend), theta_root));
+            store(pdf + s, over(mul(known, mul(theta_bend, all(hairlut_inverse_two_pi))), theta_root));
         } else {
             const real phi_bend = inverse(&phi, s, &phi_root);
             store(pdf + s, over(mul(known, mul(theta_bend, phi_bend)), mul(theta_root, phi_root)));
@@ -66,16 +66,16 @@ static inline mask known(real theta_r, real phi_r, real a, real b)
     return both(numbers(theta_r, a), numbers(b, sub(phi_r, phi_r)));
 }
 
-/* phi_i of a lobe's own azimuth x; r is phi_r in [-pi, pi) */
-static inline real incident(int azimuth, real r, real x)
+/* hairlut_table_azimuth */
+static inline real table_azimuth(const hairlut_lobe *lobe, real r, real i, real turn, real side)
 {
-    return azimuth == HAIRLUT_AZIMUTH_SUM ? sub(x, r) : add(x, r);
+    return wrap_near(sub(mul(side, add(i, mul(all(lobe->sign), r))), turn), 0.0f);
 }
 
-/* hairlut_relative_azimuth, of azimuths in [-pi, pi) */
-static inline real relative_azimuth(int azimuth, real r, real i)
+/* hairlut_incident_azimuth */
+static inline real incident_azimuth(const hairlut_lobe *lobe, real r, real x, real turn, real side)
 {
-    return wrap_up(azimuth == HAIRLUT_AZIMUTH_SUM ? add(i, r) : sub(i, r), 0.0f);
+    return wrap_near(sub(mul(side, add(x, turn)), mul(all(lobe->sign), r)), -hairlut_pi);
 }
 
 /* 1 where an azimuth is finite, which matters where it is read. */
@@ -94,7 +94,7 @@ static inline void sample_lobe_block(const hairlut_model *model, int lobe, size_
     for (size_t s = 0; s < n; s += LANES) {
         const real phi_r = load(in[1] + s), x = load(azimuth + s);
         const mask is_known = known(load(in[0] + s), phi_r, load(in[2] + s), load(in[3] + s));
-        const real turned = wrap_down(incident(l->azimuth, wrap(phi_r, -hairlut_pi), x), -hairlut_pi);
+        const real turned = incident_azimuth(l, wrap(phi_r, -hairlut_pi), x, all(0.0f), all(1.0f));
         store(valid + s, choose(is_known, load(pdf + s), all(0.0f)));
         store(azimuth + s, l->uniform ? x : turned);
     }
@@ -119,7 +119,8 @@ static inline void pdf_lobe_block(const hairlut_model *model, int lobe, size_t n
         const real phi_r = load(in[1] + first), phi_i = load(in[3] + first);
         const mask is_known = both(known(load(in[0] + first), phi_r, load(in[2] + first), phi_i), is_finite(phi_i));
         store(valid + first, choose(is_known, all(1.0f), all(0.0f)));
-        store(azimuth + first, relative_azimuth(l->azimuth, wrap(phi_r, -hairlut_pi), wrap(phi_i, -hairlut_pi)));
+        const real r = wrap(phi_r, -hairlut_pi), i = wrap(phi_i, -hairlut_pi);
+        store(azimuth + first, table_azimuth(l, r, i, all(0.0f), all(1.0f)));
         first += LANES;
     } while (first < n);
     lobe_density(l, n, in[0], in[2], azimuth, pdf);

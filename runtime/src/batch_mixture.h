@@ -28,7 +28,7 @@ typedef struct mixture_block {
 
 enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, more are halved for single samples */
 
-/* hairlut_mixture_row */
+/* hairlut_mixture_node */
 static inline real find_node(const float *nodes, int count, real x, real *t)
 {
     float at[LANES], place[LANES];
@@ -42,7 +42,7 @@ static inline real find_node(const float *nodes, int count, real x, real *t)
     } else {
         store(at, x);
         for (int l = 0; l < LANES; ++l)
-            place[l] = (float)hairlut_mixture_row(nodes, count, at[l]).j;
+            place[l] = (float)hairlut_mixture_node(nodes, count, at[l]).j;
         j = load(place);
     }
     int offset[LANES];
@@ -85,7 +85,7 @@ static inline real blend_corners(const hairlut_mixture *m, const corners *c, int
     gather4(at, c->high_above, high_above);
     if (m->turned) {
         const real from = add(low[1], mul(t, low[2])), to = add(high[1], mul(t, high[2]));
-        *turn = wrap(add(from, mul(s, wrap(sub(to, from), -hairlut_pi))), -hairlut_pi);
+        *turn = wrap_near(add(from, mul(s, wrap_near(sub(to, from), -hairlut_pi))), -hairlut_pi);
     }
     const real from = add(mul(t0, low[0]), mul(t, low_above[0])), to = add(mul(t0, high[0]), mul(t, high_above[0]));
     return add(mul(s0, from), mul(s, to));

@@ -6,6 +6,8 @@
 #include "simd_neon.h"
 
 #include "batch_kernel.h"
+#include "one.h"
 
-const hairlut_batch hairlut_batch_neon = {"neon", sample_lobe, pdf_lobe, sample_hair, pdf_hair};
+const hairlut_batch hairlut_batch_neon = {
+    "neon", {sample_lobe_one, pdf_lobe_one, sample_hair_one, pdf_hair_one}, sample_lobe, pdf_lobe, sample_hair, pdf_hair};
 #endif

@@ -2,19 +2,20 @@
 /* The _n functions where no vector instructions are known: the one-direction forms in a loop. */
 #include "batch.h"
 #include "internal.h"
+#include "one.h"
 
 static void sample_lobe(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                         const float *u_theta, const float *u_phi, hairlut_samples out)
 {
     for (size_t i = 0; i < n; ++i)
-        hairlut_put(out, i, hairlut_sample_lobe(model, lobe, theta_r[i], phi_r[i], u_theta[i], u_phi[i]));
+        hairlut_put(out, i, sample_lobe_one(model, lobe, theta_r[i], phi_r[i], u_theta[i], u_phi[i]));
 }
 
 static void pdf_lobe(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                      const float *theta_i, const float *phi_i, float *pdf_angle)
 {
     for (size_t i = 0; i < n; ++i)
-        pdf_angle[i] = hairlut_pdf_lobe(model, lobe, theta_r[i], phi_r[i], theta_i[i], phi_i[i]);
+        pdf_angle[i] = pdf_lobe_one(model, lobe, theta_r[i], phi_r[i], theta_i[i], phi_i[i]);
 }
 
 static void sample_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
@@ -24,8 +25,8 @@ static void sample_hair(const hairlut_model *model, size_t n, const float *share
     float own[HAIRLUT_MAX_LOBES];
     for (size_t i = 0; i < n; ++i)
         hairlut_put(out, i,
-                    hairlut_sample_hair(model, hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
-                                        offset ? offset[i] : 0.0f, u_lobe[i], u_theta[i], u_phi[i]));
+                    sample_hair_one(model, hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
+                                    offset ? offset[i] : 0.0f, u_lobe[i], u_theta[i], u_phi[i]));
 }
 
 static void pdf_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
@@ -33,8 +34,10 @@ static void pdf_hair(const hairlut_model *model, size_t n, const float *shares, 
 {
     float own[HAIRLUT_MAX_LOBES];
     for (size_t i = 0; i < n; ++i)
-        pdf_angle[i] = hairlut_pdf_hair(model, hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
-                                        offset ? offset[i] : 0.0f, theta_i[i], phi_i[i]);
+        pdf_angle[i] = pdf_hair_one(model, hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
+                                    offset ? offset[i] : 0.0f, theta_i[i], phi_i[i]);
 }
 
-const hairlut_batch hairlut_batch_portable = {"portable", sample_lobe, pdf_lobe, sample_hair, pdf_hair};
+const hairlut_batch hairlut_batch_portable = {"portable",  {sample_lobe_one, pdf_lobe_one, sample_hair_one, pdf_hair_one},
+                                              sample_lobe, pdf_lobe,
+                                              sample_hair, pdf_hair};

@@ -7,25 +7,24 @@
 #include "strand.h"
 
 /* Where a value lies among the nodes of a scale: outside, at its end; NaN counts as the first node. */
-HAIRLUT_INLINE hairlut_row hairlut_scale_place(const hairlut_scale *scale, float x)
+HAIRLUT_INLINE hairlut_node hairlut_scale_place(const hairlut_scale *scale, float x)
 {
-    hairlut_tally tally = hairlut_tally_zero();
+    int j = 0;
     for (int q = 0; q < scale->quads; ++q)
-        tally = hairlut_tally_at_most(tally, hairlut_quad_load(scale->inner + 4 * q), x);
-    const int j = hairlut_tally_sum(tally);
+        j += (int)hairlut_quad_count(hairlut_quad_anywhere(scale->inner + 4 * q), hairlut_quad_all(x));
     const float *node = scale->nodes + 2 * j;
-    const hairlut_row row = {j, hairlut_clamp((x - node[0]) * node[1], hairlut_constant(0.0f), hairlut_constant(1.0f))};
-    return row;
+    const hairlut_node place = {j, hairlut_clamp((x - node[0]) * node[1], hairlut_constant(0.0f), hairlut_constant(1.0f))};
+    return place;
 }
 
 /* The cell of nodes of a grid around places on its scales; `axes` is how many it has. */
-HAIRLUT_INLINE void hairlut_corners_of(const hairlut_node_grid *grid, const hairlut_row *places, int axes,
+HAIRLUT_INLINE void hairlut_corners_of(const hairlut_node_grid *grid, const hairlut_node *places, int axes,
                                        hairlut_corners *corners)
 {
     int node = 0;
     corners->weight[0] = hairlut_quad_all(1.0f);
     for (int a = 0; a < axes; ++a) {
-        const hairlut_row place = places[grid->scale[a]];
+        const hairlut_node place = places[grid->scale[a]];
         const hairlut_quad upper = hairlut_quad_all(place.t), lower = hairlut_quad_sub(hairlut_quad_all(1.0f), upper);
         const int count = 1 << a;
         node += grid->stride[a] * place.j;

@@ -53,15 +53,16 @@ static inline int hairlut_has_bits(uint32_t word, uint32_t bits)
     return (word & bits) == bits;
 }
 
-/* The kernels need AVX2 and BMI2. */
+/* The kernels need AVX2, BMI2 and POPCNT. */
 static inline hairlut_cpu hairlut_ask_cpu(void)
 {
-    enum { OSXSAVE = 1u << 27, AVX = 1u << 28 }; /* leaf 1, ecx */
-    enum { AVX2 = 1u << 5, BMI2 = 1u << 8 };     /* leaf 7, ebx */
+    enum { POPCNT = 1u << 23, OSXSAVE = 1u << 27, AVX = 1u << 28 }; /* leaf 1, ecx */
+    enum { AVX2 = 1u << 5, BMI2 = 1u << 8 };                        /* leaf 7, ebx */
     const uint32_t saves_ymm = 0x6;
     if (hairlut_read_cpuid(0).a < 7)
         return HAIRLUT_CPU_PLAIN;
-    if (!hairlut_has_bits(hairlut_read_cpuid(1).c, OSXSAVE | AVX) || !hairlut_has_bits(hairlut_read_cpuid(7).b, AVX2 | BMI2))
+    if (!hairlut_has_bits(hairlut_read_cpuid(1).c, POPCNT | OSXSAVE | AVX) ||
+        !hairlut_has_bits(hairlut_read_cpuid(7).b, AVX2 | BMI2))
         return HAIRLUT_CPU_PLAIN;
     return hairlut_has_bits(hairlut_saved_registers(), saves_ymm) ? HAIRLUT_CPU_AVX2 : HAIRLUT_CPU_PLAIN;
 }

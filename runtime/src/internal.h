@@ -46,7 +46,8 @@ enum { HAIRLUT_GROUP = 16, HAIRLUT_SMALL_GROUP = HAIRLUT_GROUP / 2, HAIRLUT_LINE
  * go one cell beyond u = 1/2. In a half, a cell's rows follow each other: the two that a sample blends are mostly in one cache
  * line. A cell is one load of 16 bytes.
  *
- * What depends on the column alone stands apart, once a table: u0, 1/h, and h HAIRLUT_SCALE, where u0 is m at the nearer end.
+ * What depends on the column alone stands apart, once a table: u0, 1/h, h HAIRLUT_SCALE and 1 / (h HAIRLUT_SCALE), where u0 is
+ * m at the nearer end.
  *
  * A slope D beyond HAIRLUT_STEEPEST times the cell's mean slope w, or below its reciprocal, counts as that bound: with cells of
  * 1e-12 rad side by side with others, the product of two axes' densities and of 1/cos at the pole stays a float. */
@@ -80,17 +81,24 @@ enum { HAIRLUT_CELL = 4, HAIRLUT_KNOT = 4 /* floats */ };
 #else
 #define HAIRLUT_UNROLLED
 #endif
+/* Where a search goes on, for each cell counted from the low end: the offset of the cell's floats in row 0 from ends[0], seen
+ * from the nearer end, and its h HAIRLUT_SCALE. */
+typedef struct hairlut_link {
+    unsigned offset;
+    float h;
+} hairlut_link;
 
 /* A table ready for sampling. */
 typedef struct hairlut_axis {
-    const float *rows;    /* row 0; best if aligned to a cache line */
-    const float *ends[2]; /* the first cells of row 0, from the low and from the high end on; best if aligned to a cell */
+    const float *rows;    /* row 0; this, the cells and the knots begin at cache lines */
+    const float *ends[2]; /* the first cells of row 0, from the low and from the high end on */
     const float *knots;   /* of a half: HAIRLUT_KNOT floats a column */
-    int pitch;            /* floats from one cell of a row to the next */
-    float row_origin;     /* theta_r of row 0 */
-    float row_scale;      /* rows per radian of theta_r */
-    float row_last;       /* height - 1 */
-    int warp;             /* hairlut_warp */
+    const hairlut_link *links;
+    int pitch;        /* floats from one cell of a row to the next */
+    float row_origin; /* theta_r of row 0 */
+    float row_scale;  /* rows per radian of theta_r */
+    float row_last;   /* height - 1 */
+    int warp;         /* hairlut_warp */
     float e;      /* octaves: the cell of m is the integer part of the folded column y scale - origin, with y the float */
     float scale;  /* whose bits are those of m + e shifted right by two; uniform: y = m */
     float origin; /* y scale at m = 0, rounded as when a sample is drawn, so that no column is below 0 */
@@ -111,9 +119,20 @@ typedef struct hairlut_lobe {
     hairlut_axis theta;
     hairlut_axis phi; /* not used where the azimuth is uniform */
     int uniform;      /* whether it is */
-    int azimuth;      /* hairlut_azimuth */
+    float sign;       /* of phi_r in the azimuth of its table: 1 in phi_i + phi_r, -1 in phi_i - phi_r */
     char name[HAIRLUT_NAME_SIZE];
 } hairlut_lobe;
+
+/* A mixture at one theta_r and offset. Of arrays of lobes, as many are set as the model has. */
+typedef struct hairlut_mix {
+    float share[HAIRLUT_MAX_LOBES];  /* in a unit of their own */
+    float weight[HAIRLUT_MAX_LOBES]; /* share / sum */
+    float turn[HAIRLUT_MAX_LOBES];   /* [-pi, pi) */
+    float sum;                       /* of the shares; 0 where no density can be given */
+    float side;                      /* -1 where the azimuth is mirrored, else 1 */
+    int lobes[HAIRLUT_MAX_LOBES];    /* the numbers of those that have a weight */
+    int count;                       /* and how many these are */
+} hairlut_mix;
 
 /* The grid of a mixture. A node of an axis is two floats: its value, and 1 / (the next one's - its own); 0 at the last. At the
  * grid's node (j, o), lobe k has HAIRLUT_CORNER floats from ((j*columns + o)*lobe_count + k)*HAIRLUT_CORNER on: its share, where
@@ -128,6 +147,8 @@ typedef struct hairlut_mixture {
     int columns;  /* nodes of the offset */
     int mirrored; /* whether -h mirrors h */
     int turned;   /* whether any turn is not 0 */
+    int constant; /* whether the mixture is the same everywhere, namely: */
+    hairlut_mix mix;
 } hairlut_mixture;
 
 struct hairlut_model {

@@ -12,16 +12,23 @@ static inline int hairlut_known(float theta_r, float phi_r, float a, float b)
     return !isunordered(theta_r, a) && !isunordered(b, phi_r - phi_r); /* infinity less itself is NaN */
 }
 
-/* phi_i relative to phi_r, as the lobe's table has it, in [0, 2 pi). Both are in [-pi, pi). */
-static inline float hairlut_relative_azimuth(int azimuth, float r, float i)
+/* The azimuth x by which a lobe's table is read: that of phi_i relative to phi_r, where a mixture mirrors it (side is -1) and turns
+ * it: relative = phi_i + sign phi_r, and x = side relative - turn, in [0, 2 pi). r and i are phi_r and phi_i in [-pi, pi). */
+static inline float hairlut_table_azimuth(const hairlut_lobe *lobe, float r, float i, float turn, float side)
 {
-    return hairlut_wrap_up(azimuth == HAIRLUT_AZIMUTH_SUM ? i + r : i - r, 0.0f);
+    return hairlut_wrap_near(side * (i + lobe->sign * r) - turn, 0.0f);
+}
+
+/* And back: phi_i in [-pi, pi) */
+static inline float hairlut_incident_azimuth(const hairlut_lobe *lobe, float r, float x, float turn, float side)
+{
+    return hairlut_wrap_near(side * (x + turn) - lobe->sign * r, -hairlut_pi);
 }
 
 /* The row of theta_r on the lobe's azimuth axis, from that on its other one. */
-HAIRLUT_INLINE hairlut_row hairlut_phi_row(const hairlut_lobe *lobe, float theta_r, hairlut_row theta_row)
+HAIRLUT_INLINE hairlut_row hairlut_phi_row(const hairlut_lobe *lobe, float theta_r, const hairlut_row *theta_row)
 {
-    return lobe->phi.grid == lobe->theta.grid ? theta_row : hairlut_axis_row(&lobe->phi, theta_r);
+    return lobe->phi.grid == lobe->theta.grid ? *theta_row : hairlut_axis_row(&lobe->phi, theta_r);
 }
 
 /* What a lobe draws: theta_i, as the axis gives it; the azimuth relative to phi_r, or of its own where it is uniform; the density. */
@@ -48,59 +55,24 @@ HAIRLUT_INLINE hairlut_drawn hairlut_draw_both(const hairlut_placed *theta, cons
     return drawn;
 }
 
-HAIRLUT_INLINE hairlut_drawn hairlut_lobe_draw(const hairlut_lobe *lobe, float theta_r, float u_theta, float u_phi)
+/* *row is that of theta_r on the axis of theta_i. */
+HAIRLUT_INLINE hairlut_drawn hairlut_lobe_draw(const hairlut_lobe *lobe, float theta_r, const hairlut_row *row,
+                                               float u_theta, float u_phi)
 {
-    const hairlut_row row = hairlut_axis_row(&lobe->theta, theta_r);
     const hairlut_placed theta = hairlut_axis_find_place(&lobe->theta, row, u_theta);
     if (lobe->uniform)
         return hairlut_draw_uniform(&theta, u_phi);
-    const hairlut_placed phi = hairlut_axis_find_place(&lobe->phi, hairlut_phi_row(lobe, theta_r, row), u_phi);
+    const hairlut_row phi_row = hairlut_phi_row(lobe, theta_r, row);
+    const hairlut_placed phi = hairlut_axis_find_place(&lobe->phi, &phi_row, u_phi);
     return hairlut_draw_both(&theta, &phi);
 }
 
-/* Searches that are under way, of the axes of some lobes: a lobe's theta, then its azimuth unless that is uniform. */
-typedef struct hairlut_searches {
-    hairlut_search search[2 * HAIRLUT_MAX_LOBES];
-    int count;
-} hairlut_searches;
-
-/* Begins those of a lobe. phi is the relative azimuth, not used where it is uniform. Returns 1 where the lobe's domain contains
- * the direction, else 0. */
-HAIRLUT_INLINE float hairlut_lobe_begin_search(const hairlut_lobe *lobe, float theta_r, hairlut_row row, float theta_i,
-                                               float phi, hairlut_searches *under_way)
+/* Any direction on the axis of a uniform azimuth: one straight cell, whose density is 1 / (2 pi) exactly. */
+HAIRLUT_INLINE hairlut_found hairlut_find_uniform(void)
 {
-    hairlut_search *next = under_way->search + under_way->count;
-    next[0] = hairlut_axis_begin_search(&lobe->theta, row, theta_i);
-    under_way->count += lobe->uniform ? 1 : 2;
-    if (lobe->uniform)
-        return (float)(next[0].x == theta_i);
-    next[1] = hairlut_axis_begin_search(&lobe->phi, hairlut_phi_row(lobe, theta_r, row), phi);
-    return (float)((next[0].x == theta_i) & (next[1].x == phi));
-}
-
-/* The root and bend of all searches; whole quads are written. */
-HAIRLUT_INLINE void hairlut_end_searches(const hairlut_searches *under_way, float *root, float *bend)
-{
-    for (int first = 0; first < under_way->count; first += 4) {
-        const hairlut_search *search = under_way->search + first;
-        const int count = under_way->count - first;
-        hairlut_found found[4];
-        found[0] = hairlut_axis_find(search);
-        found[1] = count > 1 ? hairlut_axis_find(search + 1) : found[0];
-        found[2] = count > 2 ? hairlut_axis_find(search + 2) : found[0];
-        found[3] = count > 3 ? hairlut_axis_find(search + 3) : found[0];
-        const hairlut_inverses inverse = hairlut_invert_four(found);
-        hairlut_quad_store(root + first, inverse.root);
-        hairlut_quad_store(bend + first, inverse.bend);
-    }
-}
-
-/* A lobe's density, from the roots and bends of its axes. */
-static inline float hairlut_lobe_density(const hairlut_lobe *lobe, float contains, const float *root, const float *bend)
-{
-    if (lobe->uniform)
-        return contains * hairlut_inverse_two_pi * bend[0] / root[0];
-    return contains * (bend[0] * bend[1]) / (root[0] * root[1]);
+    static const float HAIRLUT_LINE_ALIGNED straight[HAIRLUT_CELL] = {0.0f, 1.0f, 1.0f, 1.0f};
+    const hairlut_found found = {0.0f, 0.0f, hairlut_inverse_two_pi, hairlut_quad_load(straight)};
+    return found;
 }
 
 static inline hairlut_sample hairlut_finish(float theta_i, float phi_i, float pdf)

@@ -211,4 +211,5 @@ void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc 
             }
             store_weights(corner, lobe_count);
         }
+    mixture->constant = d->theta_r_count == 1 && d->offset_count == 1 && !d->mirrored;
 }

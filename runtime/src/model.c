@@ -6,6 +6,7 @@
 #include "allocator.h"
 #include "angle.h"
 #include "build.h"
+#include "mixture.h"
 
 int hairlut_version(void)
 {
@@ -183,7 +184,7 @@ static void build_lobe(hairlut_lobe *lobe, const hairlut_lobe_desc *desc, table_
     lobe->uniform = !desc->phi;
     if (desc->phi) {
         lobe->phi = list->axes[index_of(list, desc->phi)];
-        lobe->azimuth = (int)desc->azimuth;
+        lobe->sign = desc->azimuth == HAIRLUT_AZIMUTH_SUM ? 1.0f : -1.0f;
     }
     memcpy(lobe->name, desc->name, strlen(desc->name));
 }
@@ -270,6 +271,9 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
     hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, &nodes, &corners, mixture);
     model->strands = strands;
     model->lobe_count = desc->lobe_count;
+    memset(&model->mixture.mix, 0, sizeof model->mixture.mix);
+    if (model->mixture.constant)
+        hairlut_mixture_fill(model, NULL, 0, 0.0f, 0.0f, &model->mixture.mix);
     model->lobes = lobes;
     model->direct = hairlut_lobe_index(model, "direct");
     model->multiple = hairlut_lobe_index(model, "multiple");

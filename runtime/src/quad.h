@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Four neighbouring floats at once, and a float's bits, where every processor of an architecture has the instructions:
- * x86-64, AArch64. The form in plain C gives the same numbers. */
+ * x86-64, AArch64. The form in plain C gives the same numbers. hairlut_quad_load reads from multiples of 16 bytes, hairlut_quad_anywhere from any address. Of lanes:
+ * hairlut_quad_where_equal(a, b, x) is x where a == b, else 0; hairlut_quad_swapped, those of each half exchanged;
+ * hairlut_quad_count, how many of a are at most x, hairlut_quad_count_two, how many of a and b. */
 #ifndef HAIRLUT_QUAD_H
 #define HAIRLUT_QUAD_H
 
@@ -11,7 +13,7 @@
 #if defined(HAIRLUT_PLAIN_QUAD)
 #elif defined(__SSE2__) || defined(_M_X64)
 #define HAIRLUT_QUAD_SSE2
-#include <emmintrin.h>
+#include <immintrin.h>
 #elif defined(__aarch64__) || defined(_M_ARM64)
 #define HAIRLUT_QUAD_NEON
 #include <arm_neon.h>
@@ -31,7 +33,9 @@ static inline float hairlut_constant(float c)
 typedef __m128 hairlut_quad;
 
 /* clang-format off */
-static inline hairlut_quad hairlut_quad_load(const float *p) { return _mm_loadu_ps(p); }
+static inline hairlut_quad hairlut_quad_load(const float *p) { return _mm_load_ps(p); }
+static inline hairlut_quad hairlut_quad_anywhere(const float *p) { return _mm_loadu_ps(p); }
+static inline void hairlut_quad_store(float *p, hairlut_quad a) { _mm_storeu_ps(p, a); }
 static inline hairlut_quad hairlut_quad_all(float a) { return _mm_set1_ps(a); }
 static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { return _mm_add_ps(a, b); }
 static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return _mm_sub_ps(a, b); }
@@ -52,12 +56,20 @@ static inline hairlut_quad hairlut_quad_div(hairlut_quad a, hairlut_quad b) { re
 static inline hairlut_quad hairlut_quad_sqrt(hairlut_quad a) { return _mm_sqrt_ps(a); }
 static inline hairlut_quad hairlut_quad_max(hairlut_quad a, hairlut_quad b) { return _mm_max_ps(a, b); }
 static inline hairlut_quad hairlut_quad_min(hairlut_quad a, hairlut_quad b) { return _mm_min_ps(a, b); }
-static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
-static inline void hairlut_quad_store(float *p, hairlut_quad a) { _mm_storeu_ps(p, a); }
+static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return _mm_and_ps(_mm_castsi128_ps(_mm_set1_epi32(0x7fffffff)), a); }
+static inline hairlut_quad hairlut_quad_where_equal(hairlut_quad a, hairlut_quad b, hairlut_quad x) { return _mm_and_ps(_mm_cmpeq_ps(a, b), x); }
+static inline hairlut_quad hairlut_quad_swapped(hairlut_quad a) { return _mm_shuffle_ps(a, a, _MM_SHUFFLE(2, 3, 0, 1)); }
 static inline float hairlut_quad_first(hairlut_quad a) { return _mm_cvtss_f32(a); }
 static inline float hairlut_quad_second(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 1)); }
+static inline float hairlut_quad_third(hairlut_quad a) { return _mm_cvtss_f32(_mm_movehl_ps(a, a)); }
 static inline float hairlut_quad_last(hairlut_quad a) { return _mm_cvtss_f32(_mm_shuffle_ps(a, a, 3)); }
 /* clang-format on */
+
+/* a, negated where s's sign bit is set */
+static inline hairlut_quad hairlut_quad_flipped(hairlut_quad a, hairlut_quad s)
+{
+    return _mm_xor_ps(a, _mm_and_ps(s, _mm_set1_ps(-0.0f)));
+}
 
 /* `negative` where a's sign bit is set, else `positive` */
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
@@ -112,23 +124,25 @@ static inline float hairlut_shifted(float s)
     return _mm_cvtss_f32(_mm_castsi128_ps(_mm_srli_epi32(_mm_castps_si128(hairlut_quad_of(s)), 2)));
 }
 
-typedef __m128i hairlut_tally; /* four counters */
+/* How many bits of 0 .. 255 are set: not every x86-64 has an instruction for it. */
+#define HAIRLUT_BITS_2(n) n, n + 1, n + 1, n + 2
+#define HAIRLUT_BITS_4(n) HAIRLUT_BITS_2(n), HAIRLUT_BITS_2(n + 1), HAIRLUT_BITS_2(n + 1), HAIRLUT_BITS_2(n + 2)
+#define HAIRLUT_BITS_6(n) HAIRLUT_BITS_4(n), HAIRLUT_BITS_4(n + 1), HAIRLUT_BITS_4(n + 1), HAIRLUT_BITS_4(n + 2)
+static const unsigned char hairlut_bits[256] = {HAIRLUT_BITS_6(0), HAIRLUT_BITS_6(1), HAIRLUT_BITS_6(1), HAIRLUT_BITS_6(2)};
 
-static inline hairlut_tally hairlut_tally_zero(void)
+static inline unsigned hairlut_quad_count(hairlut_quad a, hairlut_quad x)
 {
-    return _mm_setzero_si128();
+    return hairlut_bits[_mm_movemask_ps(_mm_cmple_ps(a, x))];
 }
 
-/* Counts the lanes that are at most x. */
-static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
+static inline unsigned hairlut_quad_count_two(hairlut_quad a, hairlut_quad b, hairlut_quad x)
 {
-    return _mm_sub_epi32(tally, _mm_castps_si128(_mm_cmple_ps(a, _mm_set1_ps(x))));
-}
-
-static inline int hairlut_tally_sum(hairlut_tally a)
-{
-    a = _mm_add_epi32(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(1, 0, 3, 2)));
-    return _mm_cvtsi128_si32(_mm_add_epi32(a, _mm_shuffle_epi32(a, _MM_SHUFFLE(2, 3, 0, 1))));
+    const __m128i counted = _mm_packs_epi32(_mm_castps_si128(_mm_cmple_ps(a, x)), _mm_castps_si128(_mm_cmple_ps(b, x)));
+#ifdef __POPCNT__
+    return (unsigned)_mm_popcnt_u32((unsigned)_mm_movemask_epi8(counted)) / 2;
+#else
+    return hairlut_bits[_mm_movemask_epi8(_mm_packs_epi16(counted, counted)) & 255];
+#endif
 }
 
 #elif defined(HAIRLUT_QUAD_NEON)
@@ -136,6 +150,8 @@ typedef float32x4_t hairlut_quad;
 
 /* clang-format off */
 static inline hairlut_quad hairlut_quad_load(const float *p) { return vld1q_f32(p); }
+static inline hairlut_quad hairlut_quad_anywhere(const float *p) { return vld1q_f32(p); }
+static inline void hairlut_quad_store(float *p, hairlut_quad a) { vst1q_f32(p, a); }
 static inline hairlut_quad hairlut_quad_all(float a) { return vdupq_n_f32(a); }
 static inline hairlut_quad hairlut_quad_add(hairlut_quad a, hairlut_quad b) { return vaddq_f32(a, b); }
 static inline hairlut_quad hairlut_quad_sub(hairlut_quad a, hairlut_quad b) { return vsubq_f32(a, b); }
@@ -154,11 +170,19 @@ static inline hairlut_quad hairlut_quad_sqrt(hairlut_quad a) { return vsqrtq_f32
 static inline hairlut_quad hairlut_quad_max(hairlut_quad a, hairlut_quad b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 static inline hairlut_quad hairlut_quad_min(hairlut_quad a, hairlut_quad b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
 static inline hairlut_quad hairlut_quad_abs(hairlut_quad a) { return vabsq_f32(a); }
-static inline void hairlut_quad_store(float *p, hairlut_quad a) { vst1q_f32(p, a); }
+static inline hairlut_quad hairlut_quad_where_equal(hairlut_quad a, hairlut_quad b, hairlut_quad x) { return vbslq_f32(vceqq_f32(a, b), x, vdupq_n_f32(0.0f)); }
+static inline hairlut_quad hairlut_quad_swapped(hairlut_quad a) { return vrev64q_f32(a); }
 static inline float hairlut_quad_first(hairlut_quad a) { return vgetq_lane_f32(a, 0); }
 static inline float hairlut_quad_second(hairlut_quad a) { return vgetq_lane_f32(a, 1); }
+static inline float hairlut_quad_third(hairlut_quad a) { return vgetq_lane_f32(a, 2); }
 static inline float hairlut_quad_last(hairlut_quad a) { return vgetq_lane_f32(a, 3); }
 /* clang-format on */
+
+static inline hairlut_quad hairlut_quad_flipped(hairlut_quad a, hairlut_quad s)
+{
+    const uint32x4_t sign = vandq_u32(vreinterpretq_u32_f32(s), vdupq_n_u32(0x80000000u));
+    return vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a), sign));
+}
 
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
 {
@@ -196,21 +220,14 @@ static inline float hairlut_shifted(float s)
     return vget_lane_f32(vreinterpret_f32_u32(vshr_n_u32(vreinterpret_u32_f32(vdup_n_f32(s)), 2)), 0);
 }
 
-typedef uint32x4_t hairlut_tally;
-
-static inline hairlut_tally hairlut_tally_zero(void)
+static inline unsigned hairlut_quad_count(hairlut_quad a, hairlut_quad x)
 {
-    return vdupq_n_u32(0);
+    return vaddvq_u32(vshrq_n_u32(vcleq_f32(a, x), 31));
 }
 
-static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
+static inline unsigned hairlut_quad_count_two(hairlut_quad a, hairlut_quad b, hairlut_quad x)
 {
-    return vsubq_u32(tally, vcleq_f32(a, vdupq_n_f32(x)));
-}
-
-static inline int hairlut_tally_sum(hairlut_tally a)
-{
-    return (int)vaddvq_u32(a);
+    return vaddvq_u32(vaddq_u32(vshrq_n_u32(vcleq_f32(a, x), 31), vshrq_n_u32(vcleq_f32(b, x), 31)));
 }
 
 #else
@@ -222,6 +239,16 @@ static inline hairlut_quad hairlut_quad_load(const float *p)
 {
     const hairlut_quad a = {{p[0], p[1], p[2], p[3]}};
     return a;
+}
+
+static inline hairlut_quad hairlut_quad_anywhere(const float *p)
+{
+    return hairlut_quad_load(p);
+}
+
+static inline void hairlut_quad_store(float *p, hairlut_quad a)
+{
+    memcpy(p, a.lane, sizeof a.lane);
 }
 
 static inline hairlut_quad hairlut_quad_all(float x)
@@ -292,12 +319,32 @@ static inline hairlut_quad hairlut_quad_abs(hairlut_quad a)
     return a;
 }
 
+static inline hairlut_quad hairlut_quad_where_equal(hairlut_quad a, hairlut_quad b, hairlut_quad x)
+{
+    for (int l = 0; l < 4; ++l)
+        x.lane[l] = a.lane[l] == b.lane[l] ? x.lane[l] : 0.0f;
+    return x;
+}
+
+static inline hairlut_quad hairlut_quad_swapped(hairlut_quad a)
+{
+    const hairlut_quad swapped = {{a.lane[1], a.lane[0], a.lane[3], a.lane[2]}};
+    return swapped;
+}
+
 /* clang-format off */
-static inline void hairlut_quad_store(float *p, hairlut_quad a) { memcpy(p, a.lane, sizeof a.lane); }
 static inline float hairlut_quad_first(hairlut_quad a) { return a.lane[0]; }
 static inline float hairlut_quad_second(hairlut_quad a) { return a.lane[1]; }
+static inline float hairlut_quad_third(hairlut_quad a) { return a.lane[2]; }
 static inline float hairlut_quad_last(hairlut_quad a) { return a.lane[3]; }
 /* clang-format on */
+
+static inline hairlut_quad hairlut_quad_flipped(hairlut_quad a, hairlut_quad s)
+{
+    for (int l = 0; l < 4; ++l)
+        a.lane[l] *= copysignf(1.0f, s.lane[l]);
+    return a;
+}
 
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
 {
@@ -342,23 +389,30 @@ static inline float hairlut_shifted(float s)
     return s;
 }
 
-typedef int hairlut_tally;
-
-static inline hairlut_tally hairlut_tally_zero(void)
+static inline unsigned hairlut_quad_count(hairlut_quad a, hairlut_quad x)
 {
-    return 0;
-}
-
-static inline hairlut_tally hairlut_tally_at_most(hairlut_tally tally, hairlut_quad a, float x)
-{
+    unsigned count = 0;
     for (int l = 0; l < 4; ++l)
-        tally += a.lane[l] <= x;
-    return tally;
+        count += a.lane[l] <= x.lane[l];
+    return count;
 }
 
-static inline int hairlut_tally_sum(hairlut_tally a)
+static inline unsigned hairlut_quad_count_two(hairlut_quad a, hairlut_quad b, hairlut_quad x)
 {
-    return a;
+    return hairlut_quad_count(a, x) + hairlut_quad_count(b, x);
+}
+#endif
+
+#ifndef HAIRLUT_QUAD_EIGHT
+/* p[k] + t p[k + 8] of four numbers */
+static inline hairlut_quad hairlut_quad_along(const float *p, hairlut_quad t)
+{
+    return hairlut_quad_add(hairlut_quad_load(p), hairlut_quad_mul(t, hairlut_quad_load(p + 8)));
+}
+
+static inline unsigned hairlut_count_eight(const float *p, hairlut_quad t, hairlut_quad x)
+{
+    return hairlut_quad_count_two(hairlut_quad_along(p, t), hairlut_quad_along(p + 4, t), x);
 }
 #endif
 

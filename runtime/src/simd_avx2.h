@@ -30,6 +30,7 @@ static inline mask numbers(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_ORD
 static inline mask both(mask a, mask b) { return _mm256_and_ps(a, b); }
 static inline int every(mask m) { return _mm256_movemask_ps(m) == 0xff; }
 static inline real choose(mask m, real a, real b) { return _mm256_blendv_ps(b, a, m); }
+static inline real flipped(real a, real s) { return _mm256_xor_ps(a, _mm256_and_ps(s, _mm256_set1_ps(-0.0f))); }
 static inline real by_sign(real a, real negative, real positive) { return _mm256_blendv_ps(positive, negative, a); }
 
 static inline whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
@@ -60,6 +61,20 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(a, c));
     x[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(b, d));
     x[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(b, d));
+}
+
+static inline __m128 two_links(const hairlut_link *links, const int *at)
+{
+    const __m128 low = _mm_castpd_ps(_mm_load_sd((const double *)(const void *)(links + at[0])));
+    return _mm_loadh_pi(low, (const __m64 *)(const void *)(links + at[1]));
+}
+
+static inline void gather_links(const hairlut_link *links, const int *at, whole *offset, real *h)
+{
+    const real a = _mm256_set_m128(two_links(links, at + 4), two_links(links, at));
+    const real b = _mm256_set_m128(two_links(links, at + 6), two_links(links, at + 2));
+    *offset = _mm256_castps_si256(_mm256_shuffle_ps(a, b, _MM_SHUFFLE(2, 0, 2, 0)));
+    *h = _mm256_shuffle_ps(a, b, _MM_SHUFFLE(3, 1, 3, 1));
 }
 
 /* -1 in the lanes of the eight blended texels that are at most x */

@@ -5,6 +5,8 @@
 
 #include <arm_neon.h>
 
+#include "internal.h"
+
 typedef float32x4_t real;
 typedef int32x4_t whole;
 typedef uint32x4_t mask;
@@ -27,6 +29,11 @@ static inline int every(mask m) { return vminvq_u32(m) != 0; }
 static inline mask numbers(real a, real b) { return both(vceqq_f32(a, a), vceqq_f32(b, b)); }
 static inline real choose(mask m, real a, real b) { return vbslq_f32(m, a, b); }
 /* clang-format on */
+static inline real flipped(real a, real s)
+{
+    const uint32x4_t sign = vandq_u32(vreinterpretq_u32_f32(s), vdupq_n_u32(0x80000000u));
+    return vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a), sign));
+}
 static inline real by_sign(real a, real negative, real positive)
 {
     return choose(vreinterpretq_u32_s32(vshrq_n_s32(vreinterpretq_s32_f32(a), 31)), negative, positive);
@@ -57,6 +64,20 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[1] = vcombine_f32(vget_low_f32(a.val[1]), vget_low_f32(b.val[1]));
     x[2] = vcombine_f32(vget_high_f32(a.val[0]), vget_high_f32(b.val[0]));
     x[3] = vcombine_f32(vget_high_f32(a.val[1]), vget_high_f32(b.val[1]));
+}
+
+static inline float32x2_t one_link(const hairlut_link *links, int at)
+{
+    return vreinterpret_f32_u32(vld1_u32(&links[at].offset)); /* and h, which follows */
+}
+
+static inline void gather_links(const hairlut_link *links, const int *at, whole *offset, real *h)
+{
+    const float32x4_t a = vcombine_f32(one_link(links, at[0]), one_link(links, at[1]));
+    const float32x4_t b = vcombine_f32(one_link(links, at[2]), one_link(links, at[3]));
+    const float32x4x2_t both_parts = vuzpq_f32(a, b);
+    *offset = vreinterpretq_s32_f32(both_parts.val[0]);
+    *h = both_parts.val[1];
 }
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The whole hair of one strand: hair.c, of tables and a mixture that are blended over the strand's parameters first. */
+/* The whole hair of one strand: one.h, of tables and a mixture that are blended over the strand's parameters first. */
 #include "batch.h"
 #include "corners.h"
-#include "hair.h"
+#include "lobe.h"
 #include "strand_axis.h"
 #include "strand_mixture.h"
 
@@ -15,7 +15,7 @@ typedef struct strand {
 } strand;
 
 /* hairlut_corners_of, compiled once for each number of axes that is common. */
-static inline void place_corners(const hairlut_node_grid *grid, const hairlut_row *places, hairlut_corners *corners)
+static inline void place_corners(const hairlut_node_grid *grid, const hairlut_node *places, hairlut_corners *corners)
 {
     switch (grid->axis_count) {
     case 0:
@@ -35,7 +35,7 @@ static inline void place_corners(const hairlut_node_grid *grid, const hairlut_ro
 static void place_strand(const hairlut_model *model, const float *parameters, strand *s)
 {
     const hairlut_strands *strands = model->strands;
-    hairlut_row places[HAIRLUT_MOST_SCALES];
+    hairlut_node places[HAIRLUT_MOST_SCALES];
     s->model = model;
     s->known = 1;
     for (int p = 0; p < strands->parameter_count; ++p)
@@ -60,9 +60,7 @@ static void mix_strand(strand *s, const float *shares, float theta_r, float offs
         mix->sum += mix->share[k];
     if (shares)
         hairlut_mixture_given(s->model->lobe_count, shares, 1, mix);
-    const float unit = 1.0f / mix->sum;
-    for (int k = 0; k < s->model->lobe_count; ++k)
-        mix->weight[k] = mix->share[k] * unit;
+    hairlut_mixture_weigh(s->model->lobe_count, mix);
 }
 
 /* hairlut_lobe_draw */
@@ -73,73 +71,56 @@ static hairlut_drawn draw(const strand *s, int k, float theta_r, float u_theta, 
     const hairlut_blended theta = hairlut_blended_table(&lobe->theta, &strands->theta[k], s->corners),
                           phi = hairlut_blended_table(&lobe->phi, &strands->phi[k], s->corners);
     const hairlut_row row = hairlut_axis_row(&lobe->theta, theta_r);
-    const hairlut_placed a = hairlut_strand_find_place(&theta, row, u_theta);
+    const hairlut_placed a = hairlut_strand_find_place(&theta, &row, u_theta);
     if (lobe->uniform)
         return hairlut_draw_uniform(&a, u_phi);
-    const hairlut_placed b = hairlut_strand_find_place(&phi, hairlut_phi_row(lobe, theta_r, row), u_phi);
+    const hairlut_row phi_row = hairlut_phi_row(lobe, theta_r, &row);
+    const hairlut_placed b = hairlut_strand_find_place(&phi, &phi_row, u_phi);
     return hairlut_draw_both(&a, &b);
 }
 
-/* The azimuth by which lobe k's table is searched; r and i are phi_r and phi_i in [-pi, pi). */
-static float lobe_azimuth(const strand *s, int k, float r, float i)
-{
-    return hairlut_turned_relative(hairlut_relative_azimuth(s->model->lobes[k].azimuth, r, i), s->mix.turn[k], s->mix.side);
-}
+/* A direction, and the viewer's; r and i are phi_r and phi_i in [-pi, pi). */
+typedef struct direction {
+    float theta_r, r, theta_i, i;
+} direction;
 
-/* Begins the searches of a lobe's axes, as hairlut_lobe_begin_search. Returns 1 where its domain contains the direction, else 0. */
-HAIRLUT_INLINE float begin_search(const strand *s, int k, float theta_r, float theta_i, float phi,
-                                  hairlut_strand_search *next)
+/* The direction on the axes of lobe k. */
+HAIRLUT_INLINE void find_lobe(const strand *s, int k, const direction *d, hairlut_found found[2])
 {
     const hairlut_lobe *lobe = &s->model->lobes[k];
     const hairlut_strands *strands = s->model->strands;
     const hairlut_blended theta = hairlut_blended_table(&lobe->theta, &strands->theta[k], s->corners);
-    const hairlut_row row = hairlut_axis_row(&lobe->theta, theta_r);
-    hairlut_strand_begin_search(&next[0], &theta, row, hairlut_axis_inside(&lobe->theta, theta_i));
-    if (lobe->uniform)
-        return (float)(next[0].x == theta_i);
-    const hairlut_blended azimuth = hairlut_blended_table(&lobe->phi, &strands->phi[k], s->corners);
-    hairlut_strand_begin_search(&next[1], &azimuth, hairlut_phi_row(lobe, theta_r, row),
-                                hairlut_axis_inside(&lobe->phi, phi));
-    return (float)((next[0].x == theta_i) & (next[1].x == phi));
-}
-
-/* The root and bend of all searches; whole quads are written. */
-static void end_searches(hairlut_strand_search *search, int count, float *root, float *bend)
-{
-    hairlut_found found[2 * HAIRLUT_MAX_LOBES + 3];
-    for (int k = 0; k < count; ++k)
-        hairlut_strand_end_search(&search[k]);
-    for (int k = 0; k < count; ++k)
-        found[k] = hairlut_strand_find(&search[k]);
-    if (count > 0)
-        found[count] = found[count + 1] = found[count + 2] = found[0];
-    for (int first = 0; first < count; first += 4) {
-        const hairlut_inverses inverse = hairlut_invert_four(found + first);
-        hairlut_quad_store(root + first, inverse.root);
-        hairlut_quad_store(bend + first, inverse.bend);
+    const hairlut_row row = hairlut_axis_row(&lobe->theta, d->theta_r);
+    found[0] = hairlut_strand_find(&theta, &row, d->theta_i);
+    if (lobe->uniform) {
+        found[1] = hairlut_find_uniform();
+    } else {
+        const hairlut_blended phi = hairlut_blended_table(&lobe->phi, &strands->phi[k], s->corners);
+        const hairlut_row phi_row = hairlut_phi_row(lobe, d->theta_r, &row);
+        found[1] = hairlut_strand_find(&phi, &phi_row, hairlut_table_azimuth(lobe, d->r, d->i, s->mix.turn[k], s->mix.side));
     }
 }
 
-/* The sum of weight * density. Lobe `drawn`, if there is one, has the density `known`. */
-static float mixed(const strand *s, float theta_r, float r, float theta_i, float i, int drawn, float known)
+/* pdf plus the sum of weight * density over the lobes that have a weight, but for lobe `drawn`. */
+static float mixed(const strand *s, const direction *d, int drawn, float pdf)
 {
-    hairlut_strand_search searches[2 * HAIRLUT_MAX_LOBES];
-    float contains[HAIRLUT_MAX_LOBES], root[2 * HAIRLUT_MAX_LOBES], bend[2 * HAIRLUT_MAX_LOBES], pdf = 0.0f;
-    const hairlut_lobe *lobes = s->model->lobes;
-    int count = 0;
-    for (int k = 0; k < s->model->lobe_count; ++k) {
-        if (k == drawn || !(s->mix.weight[k] > 0.0f))
-            continue;
-        const float phi = lobes[k].uniform ? 0.0f : lobe_azimuth(s, k, r, i);
-        contains[k] = begin_search(s, k, theta_r, theta_i, phi, searches + count);
-        count += lobes[k].uniform ? 1 : 2;
+    hairlut_found found[2 * HAIRLUT_MAX_LOBES + 2];
+    int lobes[HAIRLUT_MAX_LOBES + 1], count = 0;
+    for (int n = 0; n < s->mix.count; ++n) {
+        lobes[count] = s->mix.lobes[n];
+        count += lobes[count] != drawn;
     }
-    end_searches(searches, count, root, bend);
-    for (int k = 0, a = 0; k < s->model->lobe_count; ++k) {
-        if (!(s->mix.weight[k] > 0.0f))
-            continue;
-        pdf += s->mix.weight[k] * (k == drawn ? known : hairlut_lobe_density(&lobes[k], contains[k], root + a, bend + a));
-        a += k == drawn ? 0 : lobes[k].uniform ? 1 : 2;
+    for (int n = 0; n < count; ++n)
+        find_lobe(s, lobes[n], d, found + 2 * n);
+    if (count % 2) { /* two at a time: the last beside itself */
+        found[2 * count] = found[2 * count - 2];
+        found[2 * count + 1] = found[2 * count - 1];
+    }
+    for (int n = 0; n < count; n += 2) {
+        const hairlut_quad density = hairlut_densities(found + 2 * n);
+        pdf += s->mix.weight[lobes[n]] * hairlut_quad_first(density);
+        if (n + 1 < count)
+            pdf += s->mix.weight[lobes[n + 1]] * hairlut_quad_third(density);
     }
     return pdf;
 }
@@ -152,15 +133,15 @@ hairlut_sample hairlut_sample_strand(const hairlut_model *model, const float *pa
         return hairlut_sample_hair(model, shares, theta_r, phi_r, offset, u_lobe, u_theta, u_phi);
     place_strand(model, parameters, &s);
     mix_strand(&s, shares, theta_r, offset);
-    const int k = hairlut_mixture_choose(&s.mix, model->lobe_count, u_lobe);
+    const int k = s.mix.lobes[hairlut_mixture_choose(&s.mix, u_lobe)];
     const hairlut_lobe *lobe = &model->lobes[k];
     const hairlut_drawn drawn = draw(&s, k, theta_r, u_theta, u_phi);
     const float theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta), r = hairlut_wrap(phi_r, -hairlut_pi);
-    const float phi_i =
-        lobe->uniform ? drawn.phi : hairlut_turned_incident(lobe->azimuth, r, drawn.phi, s.mix.turn[k], s.mix.side);
+    const float phi_i = lobe->uniform ? drawn.phi : hairlut_incident_azimuth(lobe, r, drawn.phi, s.mix.turn[k], s.mix.side);
     const int valid =
         s.known && hairlut_known(theta_r, phi_r, u_theta, u_phi) && !isunordered(offset, u_lobe) && s.mix.sum > 0.0f;
-    return hairlut_finish(theta_i, phi_i, valid ? mixed(&s, theta_r, r, theta_i, phi_i, k, drawn.pdf) : 0.0f);
+    const direction d = {theta_r, r, theta_i, phi_i};
+    return hairlut_finish(theta_i, phi_i, valid ? mixed(&s, &d, k, s.mix.weight[k] * drawn.pdf) : 0.0f);
 }
 
 float hairlut_pdf_strand(const hairlut_model *model, const float *parameters, const float *shares, float theta_r,
@@ -174,7 +155,8 @@ float hairlut_pdf_strand(const hairlut_model *model, const float *parameters, co
     if (!s.known || !hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i) || offset != offset ||
         !(s.mix.sum > 0.0f))
         return 0.0f;
-    return mixed(&s, theta_r, hairlut_wrap(phi_r, -hairlut_pi), theta_i, hairlut_wrap(phi_i, -hairlut_pi), -1, 0.0f);
+    const direction d = {theta_r, hairlut_wrap(phi_r, -hairlut_pi), theta_i, hairlut_wrap(phi_i, -hairlut_pi)};
+    return mixed(&s, &d, -1, 0.0f);
 }
 
 /* ---- arrays --------------------------------------------------------------------------------------------------- */

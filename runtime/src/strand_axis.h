@@ -33,125 +33,94 @@ HAIRLUT_INLINE hairlut_quad hairlut_blend_quad(const hairlut_blended *table, con
     return sum;
 }
 
-/* hairlut_count of a blended group of `size` */
-HAIRLUT_INLINE int hairlut_strand_count(const hairlut_blended *table, const float *group, hairlut_quad t, float x, int size,
-                                        int n)
+/* Four blended texels from p on, blended with those of the row above; in a small table the changes to it stand behind them. */
+HAIRLUT_INLINE hairlut_quad hairlut_strand_texels(const hairlut_blended *table, const float *p, hairlut_quad t, int small,
+                                                  int n)
 {
-    const int small = size <= HAIRLUT_SMALL_GROUP; /* then the changes to the row above stand behind the texels */
-    const float *above = group + (small ? HAIRLUT_SMALL_GROUP : table->axis->stride);
-    hairlut_tally tally = hairlut_tally_zero();
-    for (int k = 0; k < size; k += 4) {
-        const hairlut_quad from = hairlut_blend_quad(table, group + k, n), to = hairlut_blend_quad(table, above + k, n);
-        const hairlut_quad change = small ? to : hairlut_quad_sub(to, from);
-        tally = hairlut_tally_at_most(tally, hairlut_quad_add(from, hairlut_quad_mul(t, change)), x);
-    }
-    return hairlut_tally_sum(tally);
+    const float *above = p + (small ? HAIRLUT_SMALL_GROUP : table->axis->stride);
+    const hairlut_quad from = hairlut_blend_quad(table, p, n), to = hairlut_blend_quad(table, above, n);
+    return hairlut_quad_add(from, hairlut_quad_mul(t, small ? to : hairlut_quad_sub(to, from)));
+}
+
+/* How many texels of a group of `size`, 8 or 16, are at most x. */
+HAIRLUT_INLINE unsigned hairlut_strand_count(const hairlut_blended *table, const float *group, hairlut_quad t,
+                                             hairlut_quad x, int size, int n)
+{
+    unsigned count = 0;
+    for (int k = 0; k < size; k += 8)
+        count += hairlut_quad_count_two(hairlut_strand_texels(table, group + k, t, size == HAIRLUT_SMALL_GROUP, n),
+                                        hairlut_strand_texels(table, group + k + 4, t, size == HAIRLUT_SMALL_GROUP, n), x);
+    return count;
+}
+
+/* hairlut_axis_search_small; of at most five blocks, four texels are the ends of all but the last. */
+HAIRLUT_INLINE unsigned hairlut_strand_search_small(const hairlut_blended *table, const float *groups, hairlut_quad t,
+                                                    hairlut_quad x, int n)
+{
+    const size_t block = table->axis->columns <= 5 * HAIRLUT_SMALL_GROUP + 1
+                             ? hairlut_quad_count(hairlut_strand_texels(table, groups, t, 1, n), x)
+                             : hairlut_strand_count(table, groups, t, x, HAIRLUT_SMALL_GROUP, n);
+    return (unsigned)block * HAIRLUT_SMALL_GROUP +
+           hairlut_strand_count(table, groups + HAIRLUT_LINE + HAIRLUT_LINE * block, t, x, HAIRLUT_SMALL_GROUP, n);
 }
 
 /* hairlut_halve of blended rows; `groups` are those of the first corner. */
-static inline int hairlut_strand_halve(const hairlut_blended *table, const float *groups, hairlut_quad t, float x)
+static inline unsigned hairlut_strand_halve(const hairlut_blended *table, const float *groups, hairlut_quad t, float x)
 {
-    const int stride = table->axis->stride, n = table->nodes->count;
-    int first = 0;
-    for (int part = table->axis->step / 2; part >= HAIRLUT_GROUP; part /= 2) {
+    unsigned first = 0;
+    for (unsigned part = (unsigned)table->axis->step / 2; part >= HAIRLUT_GROUP; part /= 2) {
         const float *low_end = groups + first + part - 4; /* its last float is that of the upper half */
-        const hairlut_quad from = hairlut_blend_quad(table, low_end, n), to = hairlut_blend_quad(table, low_end + stride, n);
-        const hairlut_quad blend = hairlut_quad_add(from, hairlut_quad_mul(t, hairlut_quad_sub(to, from)));
-        first += hairlut_quad_last(blend) <= x ? part : 0;
+        first += hairlut_quad_last(hairlut_strand_texels(table, low_end, t, 0, table->nodes->count)) <= x ? part : 0;
     }
     return first;
 }
 
-/* A search, as hairlut_search; x is within the domain. */
-typedef struct hairlut_strand_search {
-    hairlut_blended table;
-    const float *row; /* of the first corner */
-    hairlut_row place;
-    float x;
-    int cell;
-} hairlut_strand_search;
-
-/* hairlut_axis_cell of blended cells */
-HAIRLUT_INLINE hairlut_quad hairlut_strand_cell(const hairlut_blended *table, int j, hairlut_quad below, hairlut_quad above,
-                                                int i, int high, int n)
+/* hairlut_axis_search_large */
+HAIRLUT_INLINE unsigned hairlut_strand_search_large(const hairlut_blended *table, const float *groups, hairlut_quad t,
+                                                    hairlut_quad x, int n)
 {
-    const unsigned column = (unsigned)i * (unsigned)table->axis->pitch;
-    const float *p = table->axis->ends[high] + column + (unsigned)j * HAIRLUT_CELL + table->first;
-    return hairlut_quad_add(hairlut_quad_mul(below, hairlut_blend_quad(table, p, n)),
-                            hairlut_quad_mul(above, hairlut_blend_quad(table, p + HAIRLUT_CELL, n)));
+    const unsigned first = (unsigned)table->axis->step * hairlut_strand_count(table, groups, t, x, HAIRLUT_GROUP, n);
+    const float *block = groups + HAIRLUT_LINE + first;
+    const unsigned halved = hairlut_strand_halve(table, block, t, hairlut_quad_first(x));
+    return first + halved + hairlut_strand_count(table, block + halved, t, x, HAIRLUT_GROUP, n);
 }
 
-HAIRLUT_INLINE int hairlut_strand_begin(const hairlut_strand_search *search, int n)
+/* hairlut_axis_blend of blended cells */
+HAIRLUT_INLINE hairlut_quad hairlut_strand_cell(const hairlut_blended *table, const hairlut_row *row, const float *p, int n)
 {
-    const hairlut_axis *axis = search->table.axis;
-    const hairlut_quad t = hairlut_quad_all(search->place.t);
-    if (axis->columns <= 5 * HAIRLUT_SMALL_GROUP + 1) /* at most five blocks */
-        return HAIRLUT_SMALL_GROUP * hairlut_strand_count(&search->table, search->row, t, search->x, 4, n);
-    if (HAIRLUT_IS_SMALL(axis->columns))
-        return HAIRLUT_SMALL_GROUP * hairlut_strand_count(&search->table, search->row, t, search->x, HAIRLUT_SMALL_GROUP, n);
-    return axis->step * hairlut_strand_count(&search->table, search->row, t, search->x, HAIRLUT_GROUP, n);
+    return hairlut_quad_add(hairlut_quad_mul(row->below, hairlut_blend_quad(table, p, n)),
+                            hairlut_quad_mul(row->above, hairlut_blend_quad(table, p + HAIRLUT_CELL, n)));
 }
 
-HAIRLUT_INLINE void hairlut_strand_begin_search(hairlut_strand_search *search, const hairlut_blended *table,
-                                                hairlut_row place, float x)
+HAIRLUT_INLINE hairlut_found hairlut_strand_find_of(const hairlut_blended *table, const hairlut_row *row, float given, int n)
 {
-    search->table = *table;
-    search->row = table->axis->rows + table->first + (ptrdiff_t)place.j * table->axis->stride;
-    search->place = place;
-    search->x = x;
-    search->cell = table->nodes->count == 2   ? hairlut_strand_begin(search, 2)
-                   : table->nodes->count == 1 ? hairlut_strand_begin(search, 1)
-                                              : hairlut_strand_begin(search, table->nodes->count);
-}
-
-HAIRLUT_INLINE int hairlut_strand_end(const hairlut_strand_search *search, int n)
-{
-    const hairlut_axis *axis = search->table.axis;
-    const hairlut_quad t = hairlut_quad_all(search->place.t);
-    const float *groups = search->row + HAIRLUT_LINE;
-    int cell = search->cell;
-    if (HAIRLUT_IS_SMALL(axis->columns))
-        return cell + hairlut_strand_count(&search->table, groups + 2 * cell, t, search->x, HAIRLUT_SMALL_GROUP, n);
-    cell += hairlut_strand_halve(&search->table, groups + cell, t, search->x);
-    return cell + hairlut_strand_count(&search->table, groups + cell, t, search->x, HAIRLUT_GROUP, n);
-}
-
-HAIRLUT_INLINE void hairlut_strand_end_search(hairlut_strand_search *search)
-{
-    const int count = search->table.nodes->count;
-    search->cell = count == 2   ? hairlut_strand_end(search, 2)
-                   : count == 1 ? hairlut_strand_end(search, 1)
-                                : hairlut_strand_end(search, count);
-}
-
-HAIRLUT_INLINE hairlut_found hairlut_strand_find_of(const hairlut_strand_search *search, int n)
-{
-    static const float scales[2] = {HAIRLUT_SCALE, -HAIRLUT_SCALE};
-    hairlut_found found;
-    const hairlut_axis *axis = search->table.axis;
-    const int i = hairlut_axis_nearer(axis, search->cell, &found.high);
-    const float scale = scales[found.high], t = search->place.t;
-    found.cell = hairlut_strand_cell(&search->table, search->place.j, hairlut_quad_all(scale * (1.0f - t)),
-                                     hairlut_quad_all(scale * t), i, found.high, n);
-    found.x = scale * search->x;
-    found.knot = axis->knots + HAIRLUT_KNOT * i;
+    const hairlut_axis *axis = table->axis;
+    const float *groups = axis->rows + table->first + (unsigned)row->j * (unsigned)axis->stride;
+    const float x = hairlut_axis_inside(axis, given);
+    const unsigned cell = HAIRLUT_IS_SMALL(axis->columns)
+                              ? hairlut_strand_search_small(table, groups, row->t, hairlut_quad_all(x), n)
+                              : hairlut_strand_search_large(table, groups, row->t, hairlut_quad_all(x), n);
+    const hairlut_link *link = axis->links + cell;
+    const float *p = axis->ends[0] + table->first + (link->offset + HAIRLUT_CELL * (unsigned)row->j);
+    const hairlut_found found = {x, given, link->h, hairlut_strand_cell(table, row, p, n)};
     return found;
 }
 
-HAIRLUT_INLINE hairlut_found hairlut_strand_find(const hairlut_strand_search *search)
+/* hairlut_axis_find */
+HAIRLUT_INLINE hairlut_found hairlut_strand_find(const hairlut_blended *table, const hairlut_row *row, float given)
 {
-    const int count = search->table.nodes->count;
-    return count == 2   ? hairlut_strand_find_of(search, 2)
-           : count == 1 ? hairlut_strand_find_of(search, 1)
-                        : hairlut_strand_find_of(search, count);
+    const int count = table->nodes->count;
+    return count == 2   ? hairlut_strand_find_of(table, row, given, 2)
+           : count == 1 ? hairlut_strand_find_of(table, row, given, 1)
+                        : hairlut_strand_find_of(table, row, given, count);
 }
 
 /* hairlut_axis_find_place */
-static inline hairlut_placed hairlut_strand_find_place(const hairlut_blended *table, hairlut_row row, float u)
+static inline hairlut_placed hairlut_strand_find_place(const hairlut_blended *table, const hairlut_row *row, float u)
 {
     const hairlut_place place = hairlut_axis_place(table->axis, u);
-    const hairlut_quad t = hairlut_quad_all(row.t), below = hairlut_quad_sub(hairlut_quad_all(1.0f), t);
-    const hairlut_placed placed = {hairlut_strand_cell(table, row.j, below, t, place.i, place.high, table->nodes->count),
+    const float *p = hairlut_axis_placed_cell(table->axis, row, place) + table->first;
+    const hairlut_placed placed = {hairlut_strand_cell(table, row, p, table->nodes->count),
                                    hairlut_quad_load(table->axis->knots + HAIRLUT_KNOT * place.i), place.m};
     return placed;
 }

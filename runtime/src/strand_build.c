@@ -129,7 +129,7 @@ hairlut_corners hairlut_only_corner(void)
 
 hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int grid)
 {
-    hairlut_row places[HAIRLUT_MOST_SCALES];
+    hairlut_node places[HAIRLUT_MOST_SCALES];
     hairlut_corners corners;
     for (int s = 0; s < strands->scale_count; ++s)
         places[s] = hairlut_scale_place(&strands->scales[s], strands->standard[strands->scales[s].parameter]);

@@ -44,7 +44,7 @@ HAIRLUT_INLINE hairlut_four_nodes hairlut_blend_fours(const hairlut_strands *str
     HAIRLUT_UNROLLED
     for (int l = 0; l < 4; ++l) {
         first[l] = hairlut_turns_load(four[node[l]].turn);
-        blend.share[l] = hairlut_quad_mul(corners->weight[0], hairlut_quad_load(four[node[l]].share));
+        blend.share[l] = hairlut_quad_mul(corners->weight[0], hairlut_quad_anywhere(four[node[l]].share));
         blend.turn[l] = hairlut_turns_float(first[l]);
     }
     for (int c = 1; c < strands->mixture.count; ++c) {
@@ -53,7 +53,7 @@ HAIRLUT_INLINE hairlut_four_nodes hairlut_blend_fours(const hairlut_strands *str
         HAIRLUT_UNROLLED
         for (int l = 0; l < 4; ++l)
             blend.share[l] =
-                hairlut_quad_add(blend.share[l], hairlut_quad_mul(weight, hairlut_quad_load(here[node[l]].share)));
+                hairlut_quad_add(blend.share[l], hairlut_quad_mul(weight, hairlut_quad_anywhere(here[node[l]].share)));
         if (!strands->turns_vary)
             continue;
         HAIRLUT_UNROLLED
@@ -71,8 +71,8 @@ HAIRLUT_INLINE void hairlut_strand_mixture(const hairlut_model *model, const hai
 {
     const hairlut_mixture *m = &model->mixture;
     const hairlut_strands *strands = model->strands;
-    const hairlut_row row = hairlut_mixture_row(m->theta_r, m->rows, theta_r);
-    const hairlut_row column = hairlut_mixture_row(m->arc, m->columns, hairlut_asin(m->mirrored ? fabsf(h) : h));
+    const hairlut_node row = hairlut_mixture_node(m->theta_r, m->rows, theta_r);
+    const hairlut_node column = hairlut_mixture_node(m->arc, m->columns, hairlut_asin(m->mirrored ? fabsf(h) : h));
     const ptrdiff_t beside = strands->four_count, above = beside * m->columns;
     const ptrdiff_t up = m->rows > 1 ? above : 0, along = m->columns > 1 ? beside : 0, node[4] = {0, up, along, up + along};
     const hairlut_quad t = hairlut_quad_all(row.t), s = hairlut_quad_all(column.t),

@@ -160,7 +160,16 @@ static void store_knots(float *stored, const double *knots, int count)
         stored[0] = (float)knots[k];
         stored[1] = (float)(1.0 / h);
         stored[2] = (float)h * HAIRLUT_SCALE;
-        stored[3] = 0.0f;
+        stored[3] = 1.0f / stored[2];
+    }
+}
+
+static void store_links(hairlut_link *links, const hairlut_axis *axis)
+{
+    for (int cell = 0; cell < axis->columns - 1; ++cell) {
+        const int mirrored = axis->columns - 2 - cell, high = cell > mirrored, i = high ? mirrored : cell;
+        links[cell].offset = (unsigned)(axis->ends[high] - axis->ends[0]) + (unsigned)(i * axis->pitch);
+        links[cell].h = axis->knots[HAIRLUT_KNOT * i + 2];
     }
 }
 
@@ -180,9 +189,14 @@ static size_t knots_floats(const hairlut_table *t)
     return (size_t)HAIRLUT_WHOLE(HAIRLUT_KNOT * HAIRLUT_HALF(t->width), HAIRLUT_LINE);
 }
 
+static size_t links_floats(const hairlut_table *t)
+{
+    return HAIRLUT_WHOLE((size_t)(t->width - 1) * sizeof(hairlut_link) / sizeof(float), HAIRLUT_LINE);
+}
+
 size_t hairlut_table_floats(const hairlut_table *t)
 {
-    return rows_floats(t) + cells_floats(t) + knots_floats(t);
+    return rows_floats(t) + cells_floats(t) + knots_floats(t) + links_floats(t);
 }
 
 /* The fields of an axis that are numbers. */
@@ -192,6 +206,7 @@ static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *s
     const float k = (float)scale->k, f0 = (float)scale->f0;
     hairlut_axis axis;
     axis.rows = axis.ends[0] = axis.ends[1] = axis.knots = NULL;
+    axis.links = NULL;
     axis.pitch = HAIRLUT_PITCH(t->height);
     axis.row_origin = t->theta_r_min;
     axis.row_scale = (float)((t->height - 1) / ((double)t->theta_r_max - (double)t->theta_r_min));
@@ -213,6 +228,7 @@ static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *s
 void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *t, float *memory)
 {
     float *rows = memory, *cells = rows + rows_floats(t), *columns = cells + cells_floats(t);
+    hairlut_link *links = (hairlut_link *)(void *)(columns + knots_floats(t));
     const hairlut_warp_scale scale = hairlut_scale_warp(t->warp, t->warp_e, t->width);
     const int half = HAIRLUT_HALF(t->width);
     double knots[MAX_SIDE / 2 + 2]; /* of a half, one cell beyond its middle */
@@ -221,9 +237,11 @@ void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *t, float *memor
     axis->ends[0] = cells;
     axis->ends[1] = cells + (size_t)half * (size_t)axis->pitch;
     axis->knots = columns;
+    axis->links = links;
     for (int k = 0; k <= half; ++k)
         knots[k] = hairlut_warp_u(t->warp, &scale, t->width, k);
     store_knots(columns, knots, half);
+    store_links(links, axis);
     for (int j = 0; j <= t->height; ++j) {
         const float *row = t->texels + (size_t)(j < t->height ? j : t->height - 1) * (size_t)t->width * TEXEL;
         const float *above = j + 1 < t->height ? row + t->width * TEXEL : row;

@@ -10,8 +10,8 @@
 enum { MOST_ARRAYS = 8 * HAIRLUT_MAX_LOBES * 4 };
 
 typedef struct written {
-    const float *data;
-    size_t count;
+    const void *data;
+    size_t bytes;
 } written;
 
 static written arrays[MOST_ARRAYS];
@@ -25,22 +25,45 @@ static void print_float(float x)
     printf("%s%sf", text, strpbrk(text, ".e") ? "" : ".0");
 }
 
-/* The number of an array of `count` floats, written if no equal one was. */
-static int array_number(const float *data, size_t count, size_t line)
+/* The number of the array that equals this one, or -1 once this one is noted as the next. */
+static int known_number(const void *data, size_t bytes)
 {
     for (int k = 0; k < array_count; ++k)
-        if (arrays[k].count == count && memcmp(arrays[k].data, data, count * sizeof *data) == 0)
+        if (arrays[k].bytes == bytes && memcmp(arrays[k].data, data, bytes) == 0)
             return k;
     if (array_count == MOST_ARRAYS) {
         fprintf(stderr, "embed: more than %d arrays\n", (int)MOST_ARRAYS);
         exit(1);
     }
     arrays[array_count].data = data;
-    arrays[array_count].count = count;
+    arrays[array_count].bytes = bytes;
+    return -1;
+}
+
+/* The number of an array of `count` floats, written if no equal one was. */
+static int array_number(const float *data, size_t count, size_t line)
+{
+    const int known = known_number(data, count * sizeof *data);
+    if (known >= 0)
+        return known;
     printf("static const float HAIRLUT_LINE_ALIGNED array_%d[%zu] = {\n", array_count, count);
     for (size_t k = 0; k < count; ++k) {
         print_float(data[k]);
         fputs(k + 1 == count ? "};\n" : (k + 1) % line == 0 ? ",\n" : ",", stdout);
+    }
+    return array_count++;
+}
+
+static int links_of(const hairlut_axis *axis)
+{
+    const int count = axis->columns - 1, known = known_number(axis->links, (size_t)count * sizeof *axis->links);
+    if (known >= 0)
+        return known;
+    printf("static const hairlut_link array_%d[%d] = {\n", array_count, count);
+    for (int k = 0; k < count; ++k) {
+        printf("{%d,", axis->links[k].offset);
+        print_float(axis->links[k].h);
+        fputs(k + 1 == count ? "}};\n" : (k + 1) % 6 == 0 ? "},\n" : "},", stdout);
     }
     return array_count++;
 }
@@ -69,8 +92,9 @@ static void print_number(const char *field, float x)
 
 static void print_axis(const char *field, const hairlut_axis *axis)
 {
-    printf("     .%s = {.rows = array_%d, .ends = {array_%d, array_%d + %td}, .knots = array_%d,\n      ", field,
-           rows_of(axis), cells_of(axis), cells_of(axis), axis->ends[1] - axis->ends[0], knots_of(axis));
+    printf("     .%s = {.rows = array_%d, .ends = {array_%d, array_%d + %td}, .knots = array_%d, .links = array_%d,\n      ",
+           field, rows_of(axis), cells_of(axis), cells_of(axis), axis->ends[1] - axis->ends[0], knots_of(axis),
+           links_of(axis));
     print_number("row_origin", axis->row_origin);
     print_number("row_scale", axis->row_scale);
     print_number("row_last", axis->row_last);
@@ -89,6 +113,7 @@ static void print_arrays(const hairlut_axis *axis)
     rows_of(axis);
     cells_of(axis);
     knots_of(axis);
+    links_of(axis);
 }
 
 static void print_lobes(const char *name, const hairlut_model *model)
@@ -101,7 +126,7 @@ static void print_lobes(const char *name, const hairlut_model *model)
     printf("static const hairlut_lobe lobes_%s[%d] = {\n", name, model->lobe_count);
     for (int k = 0; k < model->lobe_count; ++k) {
         const hairlut_lobe *lobe = &model->lobes[k];
-        printf("    {.name = \"%s\", .uniform = %d, .azimuth = %d,\n", lobe->name, lobe->uniform, lobe->azimuth);
+        printf("    {.name = \"%s\", .uniform = %d, .sign = %.1ff,\n", lobe->name, lobe->uniform, (double)lobe->sign);
         print_axis("theta", &lobe->theta);
         if (!lobe->uniform)
             print_axis("phi", &lobe->phi);
@@ -130,15 +155,40 @@ static int arc_of(const hairlut_model *model)
     return array_number(model->mixture.arc, 2 * (size_t)model->mixture.columns, HAIRLUT_LINE);
 }
 
+static void print_floats(const char *field, const float *x, int count)
+{
+    printf(".%s = {", field);
+    for (int k = 0; k < count; ++k) {
+        print_float(x[k]);
+        fputs(k + 1 == count ? "}, " : ", ", stdout);
+    }
+}
+
+/* What a constant mixture is everywhere; any other has none. */
+static void print_mix(const hairlut_mix *mix, int lobe_count)
+{
+    printf("\n      .mix = {");
+    print_floats("share", mix->share, lobe_count);
+    print_floats("weight", mix->weight, lobe_count);
+    print_floats("turn", mix->turn, lobe_count);
+    print_number("sum", mix->sum);
+    print_number("side", mix->side);
+    printf(".lobes = {");
+    for (int k = 0; k < lobe_count; ++k)
+        printf("%d%s", mix->lobes[k], k + 1 == lobe_count ? "}, " : ", ");
+    printf(".count = %d}", mix->count);
+}
+
 static void print_entry(const char *name, const hairlut_model *model)
 {
+    const hairlut_mixture *m = &model->mixture;
     printf("    {\"%s\", {.lobe_count = %d, .direct = %d, .multiple = %d, .lobes = lobes_%s,\n", name, model->lobe_count,
            model->direct, model->multiple, name);
     printf("      .mixture = {.theta_r = array_%d, .arc = array_%d, .corners = array_%d, .rows = %d, .columns = %d, "
-           ".mirrored = %d, "
-           ".turned = %d}}},\n",
-           theta_r_of(model), arc_of(model), corners_of(model), model->mixture.rows, model->mixture.columns,
-           model->mixture.mirrored, model->mixture.turned);
+           ".mirrored = %d, .turned = %d, .constant = %d,",
+           theta_r_of(model), arc_of(model), corners_of(model), m->rows, m->columns, m->mirrored, m->turned, m->constant);
+    print_mix(&m->mix, model->lobe_count);
+    puts("}}},");
 }
 
 /* The last part of a path. */

@@ -14,18 +14,18 @@ from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    "sample_direct": 256,
-    "sample_multiple": 228,
-    "pdf_direct": 406,
-    "pdf_multiple": 255,
-    "sample_hair": 797,
-    "pdf_hair": 791,
-    "sample_direct_n": 49,
-    "sample_multiple_n": 30,
-    "pdf_direct_n": 89,
-    "pdf_multiple_n": 49,
-    "sample_hair_n": 204,
-    "pdf_hair_n": 168,
+    "sample_direct": 243,
+    "sample_multiple": 219,
+    "pdf_direct": 263,
+    "pdf_multiple": 203,
+    "sample_hair": 459,
+    "pdf_hair": 423,
+    "sample_direct_n": 52,
+    "sample_multiple_n": 33,
+    "pdf_direct_n": 84,
+    "pdf_multiple_n": 47,
+    "sample_hair_n": 201,
+    "pdf_hair_n": 160,
 }
 
 

@@ -363,7 +363,11 @@ static void check_shapes(const hairlut_batch *batch)
 
 int main(void)
 {
-    const hairlut_batch public_set = {"public", hairlut_sample_lobe_n, hairlut_pdf_lobe_n, hairlut_sample_hair_n,
+    const hairlut_batch public_set = {"public",
+                                      {hairlut_sample_lobe, hairlut_pdf_lobe, hairlut_sample_hair, hairlut_pdf_hair},
+                                      hairlut_sample_lobe_n,
+                                      hairlut_pdf_lobe_n,
+                                      hairlut_sample_hair_n,
                                       hairlut_pdf_hair_n};
     const hairlut_batch *sets[8] = {&public_set};
     int count = 1;

@@ -87,7 +87,8 @@ LOOP void axis_sample(const hairlut_model *model, int lobe, int angle, size_t n,
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
-        const hairlut_placed placed = hairlut_axis_find_place(a, hairlut_axis_row(a, theta_r[i]), u[i]);
+        const hairlut_row row = hairlut_axis_row(a, theta_r[i]);
+        const hairlut_placed placed = hairlut_axis_find_place(a, &row, u[i]);
         const hairlut_draws draws = hairlut_draw_two(&placed, &placed);
         x[i] = hairlut_axis_inside(a, hairlut_quad_first(draws.x));
         pdf[i] = 1.0f / hairlut_quad_first(draws.slope);
@@ -99,10 +100,10 @@ LOOP void axis_pdf(const hairlut_model *model, int lobe, int angle, size_t n, co
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
-        const hairlut_search search = hairlut_axis_begin_search(a, hairlut_axis_row(a, theta_r[i]), x[i]);
-        const hairlut_found one = hairlut_axis_find(&search), found[4] = {one, one, one, one};
+        const hairlut_row row = hairlut_axis_row(a, theta_r[i]);
+        const hairlut_found one = hairlut_axis_find(a, &row, x[i]), found[4] = {one, one, one, one};
         const hairlut_inverses inverse = hairlut_invert_four(found);
-        pdf[i] = hairlut_axis_contains(a, x[i]) * hairlut_quad_first(inverse.bend) / hairlut_quad_first(inverse.root);
+        pdf[i] = (one.x == x[i] ? hairlut_quad_first(inverse.bend) : 0.0f) / hairlut_quad_first(inverse.root);
     }
 }
 
@@ -119,10 +120,8 @@ LOOP void axis_cell_width(const hairlut_model *model, int lobe, int angle, size_
 {
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
-        const hairlut_search search = hairlut_axis_begin_search(a, hairlut_axis_row(a, theta_r[i]), x[i]);
-        float cell[HAIRLUT_CELL];
-        hairlut_quad_store(cell, hairlut_axis_find(&search).cell);
-        width[i] = cell[2] / HAIRLUT_SCALE;
+        const hairlut_row row = hairlut_axis_row(a, theta_r[i]);
+        width[i] = fabsf(hairlut_quad_third(hairlut_axis_find(a, &row, x[i]).cell)) / HAIRLUT_SCALE;
     }
 }
 
@@ -135,18 +134,20 @@ static int same_axis(const hairlut_axis *a, const hairlut_axis *b)
            a->origin == b->origin && a->low == b->low && a->high == b->high &&
            memcmp(a->rows, b->rows, rows * sizeof(float)) == 0 &&
            memcmp(a->ends[0], b->ends[0], cells * sizeof(float)) == 0 &&
-           memcmp(a->knots, b->knots, knots * sizeof(float)) == 0;
+           memcmp(a->knots, b->knots, knots * sizeof(float)) == 0 &&
+           memcmp(a->links, b->links, (size_t)(a->columns - 1) * sizeof *a->links) == 0;
 }
 
 static int same_lobe(const hairlut_lobe *a, const hairlut_lobe *b)
 {
     return strcmp(a->name, b->name) == 0 && same_axis(&a->theta, &b->theta) && a->uniform == b->uniform &&
-           (a->uniform || (same_axis(&a->phi, &b->phi) && a->azimuth == b->azimuth));
+           (a->uniform || (same_axis(&a->phi, &b->phi) && a->sign == b->sign));
 }
 
 static int same_mixture(const hairlut_mixture *a, const hairlut_mixture *b, int lobes)
 {
     return a->rows == b->rows && a->columns == b->columns && a->mirrored == b->mirrored && a->turned == b->turned &&
+           a->constant == b->constant && memcmp(&a->mix, &b->mix, sizeof a->mix) == 0 &&
            memcmp(a->theta_r, b->theta_r, 2 * (size_t)a->rows * sizeof(float)) == 0 &&
            memcmp(a->arc, b->arc, 2 * (size_t)a->columns * sizeof(float)) == 0 &&
            memcmp(a->corners, b->corners, (size_t)(HAIRLUT_CORNER * lobes * a->rows * a->columns) * sizeof(float)) == 0;

@@ -12,7 +12,8 @@ ASK = """#include <stdio.h>
 #include "cpu.h"
 int main(void)
 {
-    const int avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+    const int avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") &&
+                     __builtin_cpu_supports("popcnt");
     printf("%d %d\\n", (int)hairlut_this_cpu(), avx2);
     return hairlut_this_cpu() != hairlut_ask_cpu();
 }

@@ -26,6 +26,7 @@ NOT_EMPTY = "no block is empty: the callers see to it, the compiler does not kno
 # branches that nothing reaches: file, text of the line, reason
 UNREACHED = [
     ("batch.c", "hairlut_this_cpu()", PROCESSOR),
+    ("batch.h", "hairlut_this_cpu()", PROCESSOR),
     ("cpu.h", "hairlut_read_cpuid", PROCESSOR),
     ("simd_avx2.h", "if (n == HAIRLUT_SMALL_GROUP)", CONSTANT),
     ("batch_axis.h", "count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);", NOT_EMPTY),

@@ -31,7 +31,7 @@ STEPS = 9  # values of a parameter that are candidates
 CELLS, MOST_PHI = 32, 144  # of theta_i and phi: shapes are known, and cells need not resolve them
 FEW_OFFSETS = 13  # by which dependences are found
 VIEWERS = np.array([-0.96, -0.7, -0.35, 0.0, 0.35, 0.7, 0.96])  # parts of the largest theta_r
-GRAZING = np.array([5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 5.0])
+GRAZING = np.array([15.0, 1.0, 1.0, 1.0, 1.0, 1.0, 15.0])
 """How many times as much may be lost there: few viewers are grazing."""
 UNSURE = 1.5  # times V with the best shares, at which others count as worse
 WORST = 3.0  # times the mean that may be lost at one theta_r

@@ -22,7 +22,7 @@ from . import boxpromise, dependence, nodemixture, nodeshapes, nodetables, shape
 from .box import Box, Place
 from .boxpromise import Measured
 from .dependence import Dependence
-from .refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART
+from .refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS
 from .shapes import Shapes
 
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
@@ -30,7 +30,7 @@ START = {"theta_r": 49, "offset": 25}
 COARSE = {"theta_r": 25, "offset": 13}
 LIMITS = {"theta_r": 145, "offset": 65}
 TWELVES = 12  # rows of theta_r are so many intervals, times a whole number
-SLOW = 40.0  # times as long as the anchor a fit takes for each parameter, about
+SLOW = 27.0  # times as long as the anchor a fit takes for each parameter, about
 RARE = 5.0  # times the tolerance that the worst hundredth of places may lose
 
 Report = Callable[[str, float], None]
@@ -100,7 +100,11 @@ def limits(found: FittedBox, tolerance: float) -> list[str]:
 def _standing_out(found: FittedBox, tolerance: float) -> dict[str, float]:
     """The axes that lose more than their part of the tolerance, and how many times as much."""
     parts = {axis: v / (SHARE_OF_AXIS * tolerance) for axis, v in found.lost.items()}
-    return {axis: part for axis, part in parts.items() if part > 1}
+    parts = {axis: part for axis, part in parts.items() if part > 1}
+    worst = np.quantile(found.measured.variance.mean(axis=1), 0.99)
+    if not parts and worst > found.reach + RARE * tolerance:  # a few viewers, at grazing theta_r
+        parts["theta_r"] = WEIGHT_PARTS
+    return parts
 
 
 def _finer(found: FittedBox, tolerance: float) -> tuple[dict[str, int], dict[str, float]] | None:
@@ -111,6 +115,8 @@ def _finer(found: FittedBox, tolerance: float) -> tuple[dict[str, int], dict[str
     for axis, part in _standing_out(found, tolerance).items():
         step = float(np.clip(part**0.25, 1.25, LARGEST_STEP))
         if axis in counts:
+            if counts[axis] == LIMITS[axis]:
+                continue
             even = TWELVES if axis == "theta_r" else 2
             counts[axis] = min(even * int(np.ceil((counts[axis] - 1) * step / even)) + 1, LIMITS[axis])
         allowed[axis] /= step**4

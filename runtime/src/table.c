@@ -88,8 +88,9 @@ hairlut_result hairlut_validate(const hairlut_table *table, char *message)
         return result;
     const size_t nodes = hairlut_node_count(known.axes, known.axis_count);
     if (known.axis_count > 0 && nodes > (size_t)(MAX_ROWS / known.height))
-        return hairlut_fail(HAIRLUT_ERROR_TABLE, message, "%zu nodes of the axes, of %d rows each: expected at most %d rows",
-                            nodes, known.height, (int)MAX_ROWS);
+        return hairlut_fail(HAIRLUT_ERROR_TABLE, message,
+                            "%zu nodes of the axes, of %d rows each: expected at most %d rows in all", nodes, known.height,
+                            (int)MAX_ROWS);
     for (int j = 0; result == HAIRLUT_OK && j < (int)nodes * known.height; ++j)
         result = validate_row(&known, j, message);
     return result;

@@ -9,6 +9,7 @@
 #include "check.h"
 
 enum { COUNT = 77, WIDTH = 9, WIDEST = 4096, HEIGHT = 3, ROWS = 2, COLUMNS = 2, LOBES = 3, MANY = 4096 };
+enum { PARAMETERS = 4, NODES = 6 /* of an axis */, ALL_NODES = NODES * 2 * 2 * 2 };
 
 /* ---- use ------------------------------------------------------------------------------------------------------ */
 
@@ -62,8 +63,48 @@ static void check_account(const hairlut_model *model)
     REQUIRE(hairlut_lobe_index(model, "no lobe") == -1 && hairlut_lobe_index(model, NULL) == -1);
 }
 
+/* Values of the parameters in their ranges, beyond them, and no numbers. */
+static void check_strands(const hairlut_model *model)
+{
+    const int count = hairlut_parameter_count(model);
+    float parameters[HAIRLUT_MAX_PARAMETERS * COUNT], shares[HAIRLUT_MAX_LOBES * COUNT], in[6][COUNT], out[5][COUNT];
+    const hairlut_samples all = {out[0], out[1], out[2], out[3]}, angles = {out[0], out[1], NULL, NULL};
+    fill(parameters, (size_t)count * COUNT, -0.5f, 1.5f, 11);
+    fill(shares, (size_t)hairlut_lobe_count(model) * COUNT, -0.1f, 1.0f, 12);
+    for (uint32_t k = 0; k < 6; ++k)
+        fill(in[k], COUNT, k < 3 ? -2.0f : 0.0f, k < 3 ? 2.0f : 1.0f, k + 1);
+    hairlut_sample_strand_n(model, COUNT, NULL, NULL, in[0], in[1], NULL, in[3], in[4], in[5], all);
+    hairlut_pdf_strand_n(model, COUNT, NULL, NULL, in[0], in[1], NULL, out[0], out[1], out[4]);
+    hairlut_sample_strand_n(model, COUNT, parameters, NULL, in[0], in[1], in[2], in[3], in[4], in[5], angles);
+    hairlut_pdf_strand_n(model, COUNT, parameters, NULL, in[0], in[1], in[2], out[0], out[1], out[4]);
+    hairlut_sample_strand_n(model, COUNT, parameters, shares, in[0], in[1], NULL, in[3], in[4], in[5], all);
+    hairlut_pdf_strand_n(model, COUNT, parameters, shares, in[0], in[1], NULL, out[0], out[1], out[4]);
+    for (size_t i = 0; i < COUNT; ++i) {
+        const hairlut_sample s = {out[0][i], out[1][i], out[2][i], out[3][i]};
+        check_sample(s);
+        REQUIRE(isfinite(out[4][i]));
+    }
+}
+
+/* What a model says of its parameters. */
+static void check_names(const hairlut_model *model)
+{
+    float least, most, standard;
+    for (int p = -1; p <= hairlut_parameter_count(model); ++p) {
+        const char *name = hairlut_parameter_name(model, p);
+        const int exists = p >= 0 && p < hairlut_parameter_count(model);
+        REQUIRE(exists == (name != NULL) && hairlut_parameter_range(model, p, NULL, NULL, NULL) == exists);
+        REQUIRE(!exists || hairlut_parameter_index(model, name) == p);
+        REQUIRE(hairlut_parameter_range(model, p, &least, &most, &standard) == exists);
+        REQUIRE(!exists || (least <= standard && standard <= most && least < most));
+    }
+    REQUIRE(hairlut_parameter_index(model, "none") == -1 && hairlut_parameter_index(model, NULL) == -1);
+}
+
 static void use(const hairlut_model *model)
 {
+    check_names(model);
+    check_strands(model);
     static const float shares[][LOBES] = {{1.0f, 0.0f, 0.0f}, {0.0f, -1.0f, NAN}, {3e38f, 3e38f, 3e38f}, {0.0f, 0.0f, 0.0f}};
     check_model(model);
     check_account(model);
@@ -87,8 +128,12 @@ static void use(const hairlut_model *model)
 
 /* Descriptors of a good model, to be spoilt: two tables, three lobes, the last of a uniform azimuth, and a mixture. */
 typedef struct scene {
-    float texels[2][HEIGHT * WIDEST * 2];
-    float theta_r[ROWS], offset[COLUMNS], share[LOBES * ROWS * COLUMNS], turn[LOBES * ROWS * COLUMNS];
+    float texels[2][ALL_NODES * HEIGHT * 1000 * 2]; /* of all nodes, or of one node and the widest table */
+    float theta_r[ROWS], offset[COLUMNS], share[LOBES * ROWS * COLUMNS * ALL_NODES],
+        turn[LOBES * ROWS * COLUMNS * ALL_NODES];
+    float nodes[NODES], ends[2];
+    hairlut_parameter parameters[PARAMETERS];
+    hairlut_parameter_nodes axes[PARAMETERS], few[2];
     hairlut_table theta, phi;
     hairlut_lobe_desc lobes[LOBES];
     hairlut_mixture_desc mixture;
@@ -97,7 +142,8 @@ typedef struct scene {
 
 static hairlut_table straight(float *texels, int width, float low, float high, hairlut_warp warp)
 {
-    for (int k = 0; k < HEIGHT * width; ++k) {
+    const int nodes = width > 1000 ? 1 : ALL_NODES;
+    for (int k = 0; k < HEIGHT * width * nodes; ++k) {
         texels[2 * k] = k % width == width - 1 ? high : low + (high - low) * (float)(k % width) / (float)(width - 1);
         texels[2 * k + 1] = (high - low) * (k % 5 ? 1.0f : 100.0f);
     }
@@ -114,8 +160,8 @@ static void set_scene(scene *s, int width, hairlut_warp warp, hairlut_azimuth az
         const hairlut_lobe_desc lobe = {sizeof lobe, names[k], &s->theta, k < LOBES - 1 ? &s->phi : NULL, azimuth};
         s->lobes[k] = lobe;
     }
-    for (int k = 0; k < LOBES * ROWS * COLUMNS; ++k)
-        s->share[k] = (float)(k % 4), s->turn[k] = (float)k - 6.0f;
+    for (int k = 0; k < LOBES * ROWS * COLUMNS * ALL_NODES; ++k)
+        s->share[k] = (float)(k % 4), s->turn[k] = (float)(k % 12) - 6.0f;
     s->theta_r[0] = -1.0f, s->theta_r[1] = 1.0f, s->offset[0] = 0.0f, s->offset[1] = 1.0f;
     s->share[0] = 1.0f;
     const hairlut_mixture_desc mixture = {sizeof mixture, ROWS,    COLUMNS, s->theta_r, s->offset,
@@ -123,6 +169,42 @@ static void set_scene(scene *s, int width, hairlut_warp warp, hairlut_azimuth az
     s->mixture = mixture;
     const hairlut_model_desc desc = {sizeof desc, LOBES, s->lobes, &s->mixture, 0, NULL};
     s->desc = desc;
+}
+
+/* hairlut_mixture_desc as 2.0 had it */
+typedef struct mixture_2_0 {
+    size_t size;
+    int counts[2];
+    const float *arrays[4];
+    int mirrored;
+} mixture_2_0;
+
+/* The scene's tables and mixture over parameters: theta over the first `theta`, phi over the second, the mixture over the first
+ * `mixture`. */
+static void vary(scene *s, int theta, int phi, int mixture)
+{
+    static const char *const names[PARAMETERS] = {"rough", "dark_2", "flat", "d"};
+    for (int k = 0; k < NODES; ++k)
+        s->nodes[k] = (float)k / (NODES - 1);
+    s->ends[0] = 0.0f, s->ends[1] = 1.0f;
+    for (int p = 0; p < PARAMETERS; ++p) {
+        const hairlut_parameter parameter = {sizeof parameter, names[p], 0.0f, 1.0f, 0.3f * (float)p};
+        const hairlut_parameter_nodes axis = {sizeof axis, p, p == 0 ? NODES : 2, p == 0 ? s->nodes : s->ends};
+        s->parameters[p] = parameter;
+        s->axes[p] = axis;
+    }
+    s->few[0] = s->few[1] = s->axes[1];
+    s->few[0].parameter = 0; /* the first parameter at two nodes: another scale than that of theta */
+    s->theta.axis_count = theta;
+    s->theta.axes = s->axes;
+    s->phi.axis_count = phi;
+    s->phi.axes = s->few;
+    s->mixture.axis_count = mixture;
+    s->mixture.axes = s->axes;
+    for (int k = 0; k < LOBES * ROWS * COLUMNS * ALL_NODES; ++k)
+        s->share[k] += k < ROWS * COLUMNS * ALL_NODES ? 0.5f : 0.0f; /* of the first lobe */
+    s->desc.parameter_count = PARAMETERS;
+    s->desc.parameters = s->parameters;
 }
 
 static void use_scene(const scene *s)
@@ -167,6 +249,34 @@ static void check_good_models(scene *s)
     s->mixture.theta_r_count = s->mixture.offset_count = 1;
     s->mixture.theta_r = s->mixture.offset = NULL;
     s->mixture.mirrored = 0;
+    use_scene(s);
+}
+
+/* Every number of axes, of tables that are searched in every way; turns that depend on parameters, or do not. */
+static void check_models_over_parameters(scene *s)
+{
+    static const int widths[] = {WIDTH, 60, 100, 1000};
+    for (size_t k = 0; k < sizeof widths / sizeof *widths; ++k)
+        for (int axes = 0; axes <= PARAMETERS; ++axes) {
+            set_scene(s, widths[k], HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM);
+            vary(s, axes, axes % 3, PARAMETERS - axes);
+            s->mixture.turn = axes == 1 ? NULL : s->turn;
+            use_scene(s);
+        }
+    set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM);
+    vary(s, 1, 2, 3);
+    s->desc.mixture = NULL;
+    use_scene(s);
+    s->desc.mixture = &s->mixture;
+    s->mixture.theta_r_count = s->mixture.offset_count = 1;
+    s->mixture.mirrored = 0;
+    use_scene(s);
+    /* 2.0's sizes: no axes, no parameters */
+    set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM);
+    vary(s, 1, 1, 1);
+    s->theta.size = s->phi.size = offsetof(hairlut_table, axis_count);
+    s->mixture.size = sizeof(mixture_2_0);
+    s->desc.size = offsetof(hairlut_model_desc, parameter_count);
     use_scene(s);
 }
 
@@ -248,6 +358,56 @@ static void check_refusals(scene *s)
     REFUSE(s->share[3] = INFINITY, HAIRLUT_ERROR_TABLE);
     REFUSE(s->turn[3] = 26.0f, HAIRLUT_ERROR_TABLE);
     REFUSE(memset(s->share, 0, sizeof s->share), HAIRLUT_ERROR_TABLE);
+#undef REFUSE
+}
+
+/* The same of parameters and axes. */
+static void check_refused_parameters(scene *s)
+{
+    const float *const nodes = many_nodes();
+#define REFUSE(change, expected)                                                                                       \
+    (set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM), vary(s, 1, 2, 3), s->theta.axes = s->few, change, \
+     refuse(s, expected))
+    REFUSE(s->desc.parameter_count = -1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->desc.parameter_count = HAIRLUT_MAX_PARAMETERS + 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->desc.parameter_count = 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->desc.parameters = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[0].size = 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].size = 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].name = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].name = "Rough", HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].name = "lobe", HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].name = "rough", HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].least = NAN, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].least = 2.0f, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].least = -2e30f, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].most = 2e30f, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].most = 1e-31f, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].standard = -0.1f, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->parameters[1].standard = 1.1f, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->theta.axis_count = -1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->theta.axis_count = HAIRLUT_MAX_AXES + 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->phi.axes = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[0].size = 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[1].size = 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[0].parameter = -1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[0].parameter = HAIRLUT_MAX_PARAMETERS, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[1].parameter = 0, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[0].count = 1, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[0].count = 65, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->few[0].values = NULL, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->ends[1] = NAN, HAIRLUT_ERROR_TABLE);
+    REFUSE(s->ends[1] = 0.0f, HAIRLUT_ERROR_TABLE);
+    REFUSE(s->ends[1] = 0.9f, HAIRLUT_ERROR_TABLE);
+    REFUSE(s->ends[0] = 0.1f, HAIRLUT_ERROR_TABLE);
+    REFUSE(s->nodes[2] = 0.0f, HAIRLUT_ERROR_TABLE);
+    REFUSE(s->mixture.axis_count = 5, HAIRLUT_ERROR_ARGUMENT);
+    REFUSE(s->texels[0][2 * (WIDTH * HEIGHT + 2)] = NAN, HAIRLUT_ERROR_TABLE);
+    REFUSE(s->share[1] = -1.0f, HAIRLUT_ERROR_TABLE);
+    REFUSE((s->theta.axis_count = 3, s->theta.axes = s->axes, s->theta.height = 4096), HAIRLUT_ERROR_TABLE);
+    REFUSE((s->mixture.theta_r_count = 4096, s->mixture.theta_r = nodes, s->mixture.offset_count = 16,
+            s->mixture.offset = nodes),
+           HAIRLUT_ERROR_TABLE);
 #undef REFUSE
 }
 
@@ -368,7 +528,9 @@ int main(int argc, char **argv)
     use(hairlut_builtin("fitted"));
     check_frame();
     check_good_models(&s);
+    check_models_over_parameters(&s);
     check_refusals(&s);
+    check_refused_parameters(&s);
     check_arguments(&s);
     check_loader_arguments();
     while (fgets(directory, sizeof directory, stdin)) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Holds every set of batch kernels that this processor runs against the one-direction functions, bit for bit: single lobes and
  * the whole hair, any n, any alignment, outputs in place of inputs, outputs and inputs left out, hard inputs, tables of awkward
- * sizes, mixtures of every shape. Prints the sets, what differs, and a checksum of all results; exits with 1 if anything
+ * sizes, mixtures of every shape, and strands of models over parameters. Prints the sets, what differs, and a checksum of all results; exits with 1 if anything
  * differs. */
 #include <math.h>
 #include <stdint.h>
@@ -142,26 +142,29 @@ typedef struct shape {
     float zero;
 } shape;
 
-static hairlut_model *make_model(const shape *s, hairlut_warp warp)
+enum { NODES = 3 /* of an axis */, AXES = 2 };
+
+/* Tables and mixture depend on the first `axes` of two parameters. */
+static hairlut_model *make_model(const shape *s, hairlut_warp warp, int axes)
 {
+    static const float values[NODES] = {0.0f, 0.4f, 1.0f};
+    static const hairlut_parameter parameters[AXES] = {{sizeof *parameters, "rough", 0.0f, 1.0f, 0.7f},
+                                                       {sizeof *parameters, "dark", 0.0f, 1.0f, 0.4f}};
+    static const hairlut_parameter_nodes nodes_of[AXES] = {{sizeof *nodes_of, 1, NODES, values},
+                                                           {sizeof *nodes_of, 0, NODES, values}};
+    const int all = axes == 0 ? 1 : axes == 1 ? NODES : NODES * NODES;
     hairlut_table tables[2 * HAIRLUT_MAX_LOBES];
     hairlut_lobe_desc lobes[HAIRLUT_MAX_LOBES];
     char names[HAIRLUT_MAX_LOBES][16];
-    const size_t nodes = (size_t)(s->rows * s->columns * s->lobes), first = (size_t)(s->rows * s->columns);
+    const size_t nodes = (size_t)(s->rows * s->columns * s->lobes * all), first = (size_t)(s->rows * s->columns * all);
     for (int k = 0; k < 2 * s->lobes; ++k) {
         const float low = k % 2 ? 0.0f : -half_pi, high = k % 2 ? two_pi : half_pi;
-        const hairlut_table table = {sizeof table,
-                                     make_texels(s->width, s->height, low, high),
-                                     s->width,
-                                     s->height,
-                                     -half_pi,
-                                     half_pi,
-                                     low,
-                                     high,
-                                     warp,
-                                     1.0f / 262144.0f,
-                                     0,
-                                     NULL};
+        const hairlut_table table = {sizeof table, make_texels(s->width, s->height * all, low, high),
+                                     s->width,     s->height,
+                                     -half_pi,     half_pi,
+                                     low,          high,
+                                     warp,         1.0f / 262144.0f,
+                                     axes,         nodes_of};
         tables[k] = table;
     }
     for (int k = 0; k < s->lobes; ++k) {
@@ -175,8 +178,8 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp)
     for (size_t k = 0; k < first; ++k)
         share[k] += 0.01f; /* one lobe has a share everywhere */
     const hairlut_mixture_desc mixture = {sizeof mixture,          s->rows,     s->columns, theta_r, offset, share,
-                                          s->turned ? turn : NULL, s->mirrored, 0,          NULL};
-    const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture, 0, NULL};
+                                          s->turned ? turn : NULL, s->mirrored, axes,       nodes_of};
+    const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture, axes > 0 ? AXES : 0, parameters};
     hairlut_model *model = NULL;
     char message[HAIRLUT_MESSAGE_SIZE];
     if (hairlut_model_create(&desc, NULL, &model, message) != HAIRLUT_OK) {
@@ -342,6 +345,55 @@ static void check_model(const hairlut_batch *batch, const hairlut_model *model, 
         }
 }
 
+/* ---- strands ---- */
+
+/* Arrays of strands against one after the other. */
+static void check_strands(const hairlut_model *model)
+{
+    static float strands[AXES * MOST], together[HAIRLUT_MAX_LOBES * MOST], out[5][MOST];
+    const hairlut_samples samples = {out[0], out[1], out[2], out[3]};
+    const int lobes = hairlut_lobe_count(model);
+    fill_inputs(MOST);
+    for (size_t i = 0; i < AXES * MOST; ++i)
+        strands[i] = i % 9 == 4 ? PICK(hard_units) : 1.2f * random_unit() - 0.1f;
+    for (int k = 0; k < lobes; ++k)
+        memcpy(together + k * MOST, inputs[6 + k], sizeof inputs[6 + k]);
+    for (size_t i = 0; i < MOST; ++i) {
+        const float strand[AXES] = {strands[i], strands[MOST + i]};
+        float shares[HAIRLUT_MAX_LOBES];
+        for (int k = 0; k < lobes; ++k)
+            shares[k] = inputs[6 + k][i];
+        const hairlut_sample s = hairlut_sample_strand(model, strand, NULL, inputs[0][i], inputs[1][i], inputs[4][i],
+                                                       inputs[5][i], inputs[2][i], inputs[3][i]);
+        expected[0][i] = s.theta_i, expected[1][i] = s.phi_i;
+        expected[2][i] = s.pdf_angle, expected[3][i] = s.pdf_solid_angle;
+        expected_pdf[i] = hairlut_pdf_strand(model, strand, shares, inputs[0][i], inputs[1][i], 0.0f, s.theta_i, s.phi_i);
+    }
+    hairlut_sample_strand_n(model, MOST, strands, NULL, inputs[0], inputs[1], inputs[4], inputs[5], inputs[2], inputs[3],
+                            samples);
+    hairlut_pdf_strand_n(model, MOST, strands, together, inputs[0], inputs[1], NULL, out[0], out[1], out[4]);
+    for (int k = 0; k < 4; ++k) {
+        compare("strand", "strands", MOST, expected[k], out[k]);
+        add_to_checksum(expected[k], MOST);
+    }
+    compare("pdf of a strand", "strands", MOST, expected_pdf, out[4]);
+    add_to_checksum(expected_pdf, MOST);
+}
+
+static void check_all_strands(void)
+{
+    static const shape shapes[] = {{9, 5, 4, 7, 3, 1, 1, 0.3f},
+                                   {60, 3, 6, 1, 1, 0, 1, 0.0f},
+                                   {100, 4, 2, 3, 4, 0, 0, 0.2f},
+                                   {600, 2, 5, 2, 1, 1, 1, 0.0f}};
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; ++k)
+        for (int axes = 1; axes <= AXES; ++axes) {
+            hairlut_model *model = make_model(&shapes[k], k % 2 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES, axes);
+            check_strands(model);
+            hairlut_free(model);
+        }
+}
+
 static void check_shapes(const hairlut_batch *batch)
 {
     static const shape shapes[] = {
@@ -355,7 +407,7 @@ static void check_shapes(const hairlut_batch *batch)
         {514, 3, 2, 1, 1, 0, 0, 0.0f},  {1025, 2, 2, 1, 1, 0, 0, 0.0f}, {4096, 2, 2, 1, 1, 0, 0, 0.0f},
     };
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; ++k) {
-        hairlut_model *model = make_model(&shapes[k], k % 4 == 3 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES);
+        hairlut_model *model = make_model(&shapes[k], k % 4 == 3 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES, 0);
         check_model(batch, model, 20);
         hairlut_free(model);
     }
@@ -380,6 +432,7 @@ int main(void)
         check_model(sets[s], hairlut_builtin("printed"), 200);
         check_model(sets[s], hairlut_builtin("fitted"), 200);
         check_shapes(sets[s]);
+        check_all_strands();
         printf("checksum %016llx\n", (unsigned long long)checksum);
     }
     return failures != 0;

@@ -63,6 +63,21 @@ static void check_account(const hairlut_model *model)
     REQUIRE(hairlut_lobe_index(model, "no lobe") == -1 && hairlut_lobe_index(model, NULL) == -1);
 }
 
+/* One strand: directions that no lobe contains, what is no number, and shares of nothing. */
+static void check_strand_directions(const hairlut_model *model)
+{
+    static const float none[HAIRLUT_MAX_LOBES], strand[HAIRLUT_MAX_PARAMETERS], half[] = {0.5f, 0.5f, 0.5f, 0.5f, NAN};
+    check_sample(hairlut_sample_strand(model, NULL, NULL, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f));
+    check_sample(hairlut_sample_strand(model, half, none, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f));
+    REQUIRE(hairlut_pdf_strand(model, NULL, NULL, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f) > 0.0f);
+    REQUIRE(hairlut_pdf_strand(model, strand, NULL, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f) > 0.0f);
+    REQUIRE(hairlut_pdf_strand(model, strand, none, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f) == 0.0f);
+    REQUIRE(hairlut_pdf_strand(model, strand, NULL, 0.1f, 0.2f, 0.3f, 4.0f, 0.5f) == 0.0f);
+    REQUIRE(hairlut_pdf_strand(model, strand, NULL, NAN, 0.2f, 0.3f, 0.4f, 0.5f) == 0.0f);
+    REQUIRE(hairlut_pdf_strand(model, strand, NULL, 0.1f, 0.2f, NAN, 0.4f, 0.5f) == 0.0f);
+    REQUIRE(hairlut_pdf_strand(model, strand, NULL, 0.1f, 0.2f, 0.3f, 0.4f, INFINITY) == 0.0f);
+}
+
 /* Values of the parameters in their ranges, beyond them, and no numbers. */
 static void check_strands(const hairlut_model *model)
 {
@@ -84,6 +99,7 @@ static void check_strands(const hairlut_model *model)
         check_sample(s);
         REQUIRE(isfinite(out[4][i]));
     }
+    check_strand_directions(model);
 }
 
 /* What a model says of its parameters. */
@@ -131,7 +147,7 @@ typedef struct scene {
     float texels[2][ALL_NODES * HEIGHT * 1000 * 2]; /* of all nodes, or of one node and the widest table */
     float theta_r[ROWS], offset[COLUMNS], share[LOBES * ROWS * COLUMNS * ALL_NODES],
         turn[LOBES * ROWS * COLUMNS * ALL_NODES];
-    float nodes[NODES], ends[2];
+    float nodes[NODES], others[NODES], ends[2];
     hairlut_parameter parameters[PARAMETERS];
     hairlut_parameter_nodes axes[PARAMETERS], few[2];
     hairlut_table theta, phi;
@@ -185,7 +201,8 @@ static void vary(scene *s, int theta, int phi, int mixture)
 {
     static const char *const names[PARAMETERS] = {"rough", "dark_2", "flat", "d"};
     for (int k = 0; k < NODES; ++k)
-        s->nodes[k] = (float)k / (NODES - 1);
+        s->nodes[k] = s->others[k] = (float)k / (NODES - 1);
+    s->others[1] = 0.1f;
     s->ends[0] = 0.0f, s->ends[1] = 1.0f;
     for (int p = 0; p < PARAMETERS; ++p) {
         const hairlut_parameter parameter = {sizeof parameter, names[p], 0.0f, 1.0f, 0.3f * (float)p};
@@ -265,6 +282,8 @@ static void check_models_over_parameters(scene *s)
         }
     set_scene(s, WIDTH, HAIRLUT_WARP_OCTAVES, HAIRLUT_AZIMUTH_SUM);
     vary(s, 1, 2, 3);
+    s->few[0].count = NODES;
+    s->few[0].values = s->others;
     s->desc.mixture = NULL;
     use_scene(s);
     s->desc.mixture = &s->mixture;

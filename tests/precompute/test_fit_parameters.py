@@ -157,7 +157,7 @@ def test_places_together_tell_lobes_apart_that_one_alone_does_not():
     given = box.of_parameters(density, (Parameter("mix", 0.1, 0.9, 0.5),), False)
     places = ((0.5,), (0.15,), (0.85,))
     first = shapes.at_anchor(given, places[0], 2, False, 13, lambda share: None)
-    apart = shapes.joined(given, first, places, shapes.BOTH)
+    apart = shapes.joined(given, first, places, first.rows * 3, shapes.BOTH)
     assert apart.variance() < 0.003
     row = apart.rows[6]
     narrow = int(row.theta.max(axis=0).argmax())

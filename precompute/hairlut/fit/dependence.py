@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import shapes, tied
+from . import shapes
 from .box import Box, Place, with_value
-from .shapes import BOTH, PHI, THETA, Shapes
+from .shapes import BOTH, NEITHER, PHI, THETA, Shapes
 
 STEPS = 9  # values of a parameter along which lobes are followed
-JOINED = 4  # values of one whose lobes keep their shapes that are fitted together
+JOINED = 3, 5, 8  # numbers of those that are fitted together with the first, to see if they may be
+HOPELESS = 2.0  # V of shapes that are kept from the anchor, at which they are no start for that
 SLACK = 0.004  # of V by which shapes that are fixed may lose
 
 
@@ -42,11 +43,9 @@ def dependence(box: Box, anchor: Shapes, report: Callable[[float], None]) -> Dep
     kept = []
     for p in range(count):
         report(p / (2 * count))
-        values = _from(box.steps(p, JOINED), places[0][p])
-        more = tuple(with_value(places[0], p, v) for v in values[1:])
-        together = shapes.joined(box, base, places + more, BOTH)
-        if _keeps(box, base, together, more):
-            base, places = together, places + more
+        together = _together(box, base, p)
+        if together:
+            base, places = together, together.places
             kept.append(p)
     on_theta, on_phi, along = [], [], {}
     for p in (p for p in range(count) if p not in kept):
@@ -64,18 +63,30 @@ def _from(values: np.ndarray, start: float) -> np.ndarray:
     return values if start == values[0] else values[::-1]
 
 
-def _keeps(box: Box, base: Shapes, together: Shapes, more: tuple[Place, ...]) -> bool:
-    """Whether the shapes that more places have together lose no more than those of each alone."""
-    if together.variance() > base.variance() + 10 * SLACK:
-        return False
-    blocks = len(base.theta_r)
-    first = replace(base, places=base.places[:1], blocks=base.blocks[:blocks], rows=base.rows[:blocks])
-    for number, place in enumerate(more, len(base.places)):
-        first = shapes.followed(box, first, (place,), BOTH)
-        part = slice(number * blocks, (number + 1) * blocks)
-        if tied.variance(together.blocks[part], together.rows[part]) > first.variance() + SLACK:
-            return False
-    return True
+def _together(box: Box, base: Shapes, parameter: int) -> Shapes | None:
+    """The shapes that more values of a parameter have together, if these lose no more than each alone."""
+    values = _from(box.steps(parameter, STEPS), base.places[0][parameter])
+    one = _one_place(base, 0)
+    fixed = _followed(box, one, parameter, values, NEITHER, HOPELESS)
+    if len(fixed) < STEPS:
+        return None
+    more = [fixed[i] for i in JOINED]
+    starts = [*base.rows, *(row for there in more for row in there.rows)]
+    places = base.places + tuple(there.places[0] for there in more)
+    together = shapes.joined(box, one, places, starts, BOTH)
+    free = _followed(box, one, parameter, values, BOTH)
+    for number, i in enumerate(JOINED, len(base.places)):
+        if _one_place(together, number).variance() > free[i].variance() + SLACK:
+            return None
+    return together
+
+
+def _one_place(found: Shapes, number: int) -> Shapes:
+    """The shapes of one of the places alone."""
+    part = slice(number * len(found.theta_r), (number + 1) * len(found.theta_r))
+    return replace(
+        found, places=found.places[number : number + 1], blocks=found.blocks[part], rows=found.rows[part]
+    )
 
 
 def _least(

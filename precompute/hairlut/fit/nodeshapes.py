@@ -149,7 +149,10 @@ def at_nodes(
     if tied:
         rows = [replace(row, phi=found.base.rows[0].phi) for row in full.rows]
         start = replace(full, rows=rows, blocks=[replace(b, phi=0) for b in full.blocks], tied=True)
-    start = shapes.joined(box, start, _some(found.places), THETA if tied else BOTH)
+    numbers = _some(len(found.places))
+    places = tuple(found.places[i] for i in numbers)
+    starts = shapes.starts_like(start, found.base, numbers)
+    start = shapes.joined(box, start, places, starts, THETA if tied else BOTH)
     theta = _grid(box, start, found, found.theta, along, {}, lambda share: report(share * 0.8))
     common = _part(theta, found.phi, found.places[0])
     if set(found.phi) <= set(found.theta):
@@ -168,9 +171,9 @@ def _values(grid: NodeShapes, index: tuple[int, ...]) -> tuple[float, ...]:
     return tuple(float(v[i]) for v, i in zip(grid.nodes, index, strict=True))
 
 
-def _some(places: tuple[Place, ...]) -> tuple[Place, ...]:
-    numbers = np.unique(np.linspace(0, len(places) - 1, min(ENOUGH_JOINED, len(places))).round().astype(int))
-    return tuple(places[i] for i in numbers)
+def _some(places: int) -> list[int]:
+    """Numbers of some of the places, the first among them."""
+    return sorted({round(x) for x in np.linspace(0, places - 1, min(ENOUGH_JOINED, places))})
 
 
 def _grid(

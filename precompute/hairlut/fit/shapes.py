@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..lobes import Array
+from ..mixture import wrap
 from . import cells, tied
 from .box import Box, Place
 from .lobesfit import Row, first_row, one_more
@@ -174,17 +175,47 @@ def followed(
     return there.improved(sweeps, moving, before.turning)
 
 
-def joined(box: Box, shapes: Shapes, places: tuple[Place, ...], moving: tuple[bool, bool]) -> Shapes:
-    """The shapes that several places have together, the first of which has these."""
-    edges = _edges(box, places, shapes.theta_r, shapes.angle)
-    blocks = _blocks(box, places, shapes.theta_r, shapes.angle, edges, shapes.tied)
-    m, count = blocks[0].mass.shape[2], len(shapes.theta_r)
-    rows = [
-        replace(row, theta=cells.rebinned(row.theta, shapes.edges[i], edges[i]), phi=around(row.phi, m))
-        for i, row in enumerate(shapes.rows[:count])
+def joined(
+    box: Box, first: Shapes, places: tuple[Place, ...], starts: list[Row], moving: tuple[bool, bool]
+) -> Shapes:
+    """The shapes that places have together: they start from those at the first of them, `first`; shares and
+    turns from starts, in the order of the places, then of theta_r."""
+    edges = _edges(box, places, first.theta_r, first.angle)
+    blocks = _blocks(box, places, first.theta_r, first.angle, edges, first.tied)
+    m, count = blocks[0].mass.shape[2], len(first.theta_r)
+    known = [
+        (cells.rebinned(row.theta, first.edges[j], edges[j]), around(row.phi, m))
+        for j, row in enumerate(first.rows[:count])
     ]
-    there = replace(shapes, places=places, edges=edges, blocks=blocks, rows=rows * len(places))
-    return there.improved(JOINT, moving, shapes.turning)
+    rows = [
+        replace(start, theta=known[i % count][0], phi=known[i % count][1]) for i, start in enumerate(starts)
+    ]
+    there = replace(first, places=places, edges=edges, blocks=blocks, rows=rows)
+    return there.improved(JOINT, moving, first.turning)
+
+
+def starts_like(first: Shapes, like: Shapes, numbers: list[int]) -> list[Row]:
+    """Rows whose shares and turns are those of `first`, changed as they change from the first place of
+    `like`, which has other theta_r, to its places of these numbers."""
+    count = len(like.theta_r)
+    found = []
+    for number in numbers:
+        there, anchor = like.rows[number * count : (number + 1) * count], like.rows[:count]
+        share = np.stack([a.share / b.share for a, b in zip(there, anchor, strict=True)])
+        turn = np.stack([wrap(a.turn - b.turn) for a, b in zip(there, anchor, strict=True)])
+        for theta_r, row in zip(first.theta_r, first.rows, strict=True):
+            x = np.interp(theta_r, like.theta_r, np.arange(count))
+            i = min(int(x), count - 2)
+            t = x - i
+            changed = row.share * ((1 - t) * share[i] + t * share[i + 1])
+            found.append(
+                replace(
+                    row,
+                    share=(changed / changed.sum(axis=1, keepdims=True)).astype(row.share.dtype),
+                    turn=(row.turn + (1 - t) * turn[i] + t * turn[i + 1]).astype(row.turn.dtype),
+                )
+            )
+    return found
 
 
 def _edges(box: Box, places: tuple[Place, ...], theta_r: Array, angle: Array) -> Array:

@@ -16,6 +16,7 @@ PAGES = {
             "whole calls beside their rivals; time and variance of a sample",
         ),
         ("Scale", "scale.md", "what more lobes, offsets, rows, columns and threads cost"),
+        ("The size to ship", "sizes.md", "time, bytes and quasi-random error by the tolerance baked to"),
         ("Hard cases", "hard_cases.md", "the error of narrow, cut, split, flat and broken densities"),
         ("The study", "study.md", "why this warp, these cells, these ends: all alternatives"),
         (
@@ -73,6 +74,7 @@ def write(out: Path, luts: Path, bench: Path, parts: Iterable[str]) -> list[Path
     pages = {
         "speed": _speed,
         "scale": _scale,
+        "sizes": _sizes,
         "hard": _hard,
         "study": _study,
         "quasi": _quasi,
@@ -123,6 +125,23 @@ def _scale(out: Path, luts: Path, bench: Path) -> list[Path]:
         times = timing.measure(bench, Path(folder) / "luts", scale.NAMES, Path(folder) / "times.json")
     page = out / "scale.md"
     page.write_text(scale.page(times))
+    return [page]
+
+
+def _sizes(out: Path, luts: Path, bench: Path) -> list[Path]:
+    from bench import timing
+
+    from report import sizes
+
+    with progress("sizes") as step, TemporaryDirectory() as folder:
+        step("baking")
+        compared = sizes.sizes()
+        for size in compared:
+            sizes.write_model(Path(folder) / "luts", size)
+        step("timing")
+        times = timing.measure(bench, Path(folder) / "luts", sizes.NAMES, Path(folder) / "times.json")
+        page = out / "sizes.md"
+        page.write_text(sizes.page(compared, times, step))
     return [page]
 
 

@@ -14,7 +14,7 @@ from hairlut.extras import needed_for_plots
 from report import write
 from report.places import PAGES, ROOT
 
-PARTS = ("speed", "scale", "hard", "study", "quasi", "pictures")
+PARTS = ("speed", "scale", "sizes", "hard", "study", "quasi", "pictures")
 
 
 def parse() -> argparse.Namespace:

@@ -10,7 +10,7 @@ from hairlut import exr
 from hairlut.lobes import FITTED, MODELS
 from hairlut.warp import Warp
 from report import bake_speed, index, markdown, study
-from report.places import PAGES
+from report.places import PAGES, ROOT
 
 matplotlib = pytest.importorskip("matplotlib", reason="figures need pip install 'precompute[report]'")
 
@@ -70,6 +70,27 @@ def test_speed_page_says_who_wins(tmp_path):
     assert "| octaves, rational quadratic cells | 16 | 2048 | 8192 |" in text
     assert "| 16x16, one at a time | 2.00 | 2.50 | +25% |" in text
     assert speed.draw(points, times, tmp_path / "figure.svg").stat().st_size > 5000
+
+
+def test_the_page_of_sizes_says_which_is_the_fastest_that_meets_the_limits(monkeypatch):
+    from report import quasi, sizes
+
+    table = exr.read(ROOT / "luts" / "fitted" / "direct_theta.exr")[0]
+    compared = [sizes.Size(title, title, (table,) * 3) for title in ("coarse", "V <= 2e-05", "fine")]
+    errors = {"coarse": 1.3, "V <= 2e-05": 1.0, "fine": 1.0}
+    monkeypatch.setattr(sizes.Size, "ratios", lambda size: dict.fromkeys(quasi.LIMITS, errors[size.title]))
+
+    def said(one: dict[str, float]) -> str:
+        repeats = {
+            f"{title}/vertex/hairlut/{how}": [ns] for title, ns in one.items() for how in ("one", "arrays")
+        }
+        return sizes.page(compared, Times(repeats, "a processor"))
+
+    assert "it is V <= 2e-05, as shipped." in said({"coarse": 1.0, "V <= 2e-05": 2.0, "fine": 3.0})
+    assert "it is fine; V <= 2e-05, as shipped, takes 50% longer." in said(
+        {"coarse": 1.0, "V <= 2e-05": 3.0, "fine": 2.0}
+    )
+    assert said({"coarse": 1.0, "V <= 2e-05": 2.0, "fine": 3.0}).count("| no |") == 1
 
 
 def test_scale_page_fits_a_line(tmp_path):

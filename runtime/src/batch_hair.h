@@ -128,13 +128,14 @@ static inline void pdf_hair_block(const hairlut_model *model, size_t n, const ha
     mixture_block m;
     float sum[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
-    begin_mixtures(model, in->given, &m);
+    begin_mixtures(model, in->given, n, &m, share);
     end_directions(&d, &m, n);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), theta_i = load(in->theta_i + s);
         const real phi_i = load(in->phi_i + s), offset = in->offset ? load(in->offset + s) : all(0.0f);
         const mask wanted = both(both(known(theta_r, phi_r, theta_i, phi_i), is_finite(phi_i)), numbers(offset, offset));
-        const real sum_of_shares = mix_at(model, in->given, theta_r, offset, &m, s, share);
+        const real sum_of_shares =
+            m.constant ? all(model->mixture.mix.sum) : mix_at(model, in->given, theta_r, offset, &m, s, share);
         store_weights(model, share, sum_of_shares, wanted, &m, s);
         store(d.theta_r + s, theta_r);
         store(d.r + s, wrap(phi_r, -hairlut_pi));
@@ -197,12 +198,12 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
 {
     float r[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
-    begin_mixtures(model, in->given, m);
+    begin_mixtures(model, in->given, n, m, share);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), u_lobe = load(in->u_lobe + s);
         const real offset = in->offset ? load(in->offset + s) : all(0.0f);
         const mask wanted = both(known(theta_r, phi_r, load(in->u_theta + s), load(in->u_phi + s)), numbers(offset, u_lobe));
-        const real sum = mix_at(model, in->given, theta_r, offset, m, s, share);
+        const real sum = m->constant ? all(model->mixture.mix.sum) : mix_at(model, in->given, theta_r, offset, m, s, share);
         store_weights(model, share, sum, wanted, m, s);
         choose_lobes(model, share, sum, u_lobe, m, s);
         store(r + s, wrap(phi_r, -hairlut_pi));
@@ -214,7 +215,7 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
     reorder(u->theta, in->u_theta, order, n);
     reorder(u->phi, in->u_phi, order, n);
     for (int k = 0; k < model->lobe_count; ++k) {
-        if (!m->alone)
+        if (!m->constant)
             reorder_in_place(m->weight[k], order, n);
         if (model->mixture.turned)
             reorder_in_place(m->turn[k], order, n);

@@ -21,7 +21,7 @@ typedef struct mixture_block {
     int chosen[BLOCK];                     /* the lobe that is drawn */
     float valid[BLOCK];                    /* 1, or 0 where no density can be given */
     int all_valid;
-    int alone;                    /* whether weights are those of the model's only node, and not stored */
+    int constant;                 /* whether weights are the same everywhere, and not stored */
     int some[HAIRLUT_MAX_LOBES];  /* whether any of the block has a share of the lobe */
     int every[HAIRLUT_MAX_LOBES]; /* whether all have */
 } mixture_block;
@@ -115,7 +115,7 @@ static inline int is_alone(const hairlut_model *model)
     return model->mixture.rows == 1 && model->mixture.columns == 1;
 }
 
-/* hairlut_mixture_at of samples s .. s+LANES-1; returns the shares and their sum */
+/* hairlut_mixture_fill of samples s .. s+LANES-1, where that is not constant; the shares and, returned, their sum */
 static inline real mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mixture_block *m,
                           size_t s, real share[HAIRLUT_MAX_LOBES])
 {
@@ -147,7 +147,7 @@ static inline void store_weights(const hairlut_model *model, const real *share, 
 {
     const mask valid = both(wanted, greater(sum, all(0.0f)));
     const real unit = over(all(1.0f), sum);
-    for (int k = 0; k < model->lobe_count && !m->alone; ++k)
+    for (int k = 0; k < model->lobe_count && !m->constant; ++k)
         store(m->weight[k] + s, mul(share[k], unit));
     store(m->valid + s, choose(valid, all(1.0f), all(0.0f)));
     m->all_valid &= every(valid);
@@ -169,13 +169,20 @@ static inline void choose_lobes(const hairlut_model *model, const real *share, r
 /* The weight of lobe k of samples s .. s+LANES-1 */
 static inline real weight_at(const hairlut_model *model, const mixture_block *m, int k, size_t s)
 {
-    return m->alone ? all(model->mixture.corners[HAIRLUT_CORNER * k + 3]) : load(m->weight[k] + s);
+    return m->constant ? all(model->mixture.mix.weight[k]) : load(m->weight[k] + s);
 }
 
-static inline void begin_mixtures(const hairlut_model *model, given_shares given, mixture_block *m)
+/* Before those of n samples are mixed: shares and turns that are the same for all. */
+static inline void begin_mixtures(const hairlut_model *model, given_shares given, size_t n, mixture_block *m,
+                                  real share[HAIRLUT_MAX_LOBES])
 {
     m->all_valid = 1;
-    m->alone = is_alone(model) && !given.shares;
+    m->constant = model->mixture.constant && !given.shares;
+    for (int k = 0; m->constant && k < model->lobe_count; ++k) {
+        share[k] = all(model->mixture.mix.share[k]);
+        for (size_t s = 0; model->mixture.turned && s < n; s += LANES)
+            store(m->turn[k] + s, all(model->mixture.mix.turn[k]));
+    }
 }
 
 /* Fills `some` and `every` once the weights of n samples are set. */
@@ -183,7 +190,7 @@ static inline void sum_up(const hairlut_model *model, size_t n, mixture_block *m
 {
     for (int k = 0; k < model->lobe_count; ++k) {
         real least = all(1.0f), most = all(0.0f);
-        for (size_t s = 0; s < (m->alone ? LANES : n); s += LANES) {
+        for (size_t s = 0; s < (m->constant ? LANES : n); s += LANES) {
             least = smaller(weight_at(model, m, k, s), least);
             most = larger(weight_at(model, m, k, s), most);
         }

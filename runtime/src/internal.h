@@ -136,8 +136,7 @@ typedef struct hairlut_mix {
 
 /* The grid of a mixture. A node of an axis is two floats: its value, and 1 / (the next one's - its own); 0 at the last. At the
  * grid's node (j, o), lobe k has HAIRLUT_CORNER floats from ((j*columns + o)*lobe_count + k)*HAIRLUT_CORNER on: its share, where
- * those of a node sum to 1; its turn in [-pi, pi); by how much that changes, along the shorter arc, to node (j+1, o); and its share
- * over the sum of the floats that the shares are. */
+ * those of a node sum to 1; its turn in [-pi, pi); by how much that changes, along the shorter arc, to node (j+1, o); and 0. */
 enum { HAIRLUT_CORNER = 4 };
 typedef struct hairlut_mixture {
     const float *theta_r; /* the nodes of theta_r */

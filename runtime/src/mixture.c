@@ -165,16 +165,7 @@ static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lo
     stored[0] = (float)blended_share(desc, lobe_count, nodes, corners, k, j, o);
     stored[1] = hairlut_wrap((float)hairlut_shorter_arc(turn), -hairlut_pi);
     stored[2] = (float)hairlut_shorter_arc(next - turn);
-}
-
-/* The weights of a node: hairlut_mixture_at's where there is no other node. */
-static void store_weights(float *node, int lobe_count)
-{
-    float sum = 0.0f;
-    for (int k = 0; k < lobe_count; ++k)
-        sum += node[HAIRLUT_CORNER * k];
-    for (int k = 0; k < lobe_count; ++k)
-        node[HAIRLUT_CORNER * k + 3] = node[HAIRLUT_CORNER * k] * (1.0f / sum);
+    stored[3] = 0.0f;
 }
 
 static void store_nodes(float *stored, const float *nodes, int count, int is_offset)
@@ -209,7 +200,6 @@ void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc 
                 store_corner(corner + HAIRLUT_CORNER * k, d, lobe_count, nodes, corners, k, j, o);
                 mixture->turned |= corner[HAIRLUT_CORNER * k + 1] != 0.0f;
             }
-            store_weights(corner, lobe_count);
         }
     mixture->constant = d->theta_r_count == 1 && d->offset_count == 1 && !d->mirrored;
 }

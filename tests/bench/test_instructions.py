@@ -24,8 +24,8 @@ PINNED = {
     "sample_multiple_n": 33,
     "pdf_direct_n": 84,
     "pdf_multiple_n": 47,
-    "sample_hair_n": 201,
-    "pdf_hair_n": 160,
+    "sample_hair_n": 175,
+    "pdf_hair_n": 134,
 }
 
 

@@ -30,7 +30,7 @@ from .turning import TWO_PI
 
 MAX_LOBES = 8
 USUAL_LOBES = 3  # reflected, transmitted, and reflected inside: so many are tried however late it is
-GAIN = 0.001
+GAIN = 0.0005
 """Lobes are worth their memory if they lower V by this much, and"""
 PART = 0.2
 """by this part of the least V of all numbers of lobes."""

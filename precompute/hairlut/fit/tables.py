@@ -23,6 +23,7 @@ EXPONENTS = -5, -8, -11, -14, -17  # of the warp's e
 HEAVIEST = 4.0
 """The largest weight that a table may cause where its lobe is bright: lobes of little light are alone at some
 azimuths, so that their importance does not forgive it."""
+CLOSE = 1.5  # times the least loss, where no table meets the need: what is as good as that
 FROM_WIDTH = 0.5  # part of the loss that the width may make; the rest is the height's
 _nodes, _weights = np.polynomial.legendre.leggauss(4)
 NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
@@ -39,31 +40,33 @@ class Need:
 
 
 def smallest(name: str, model: str, exact: SmoothRows, need: Need) -> Table:
-    """The table of fewest texels that does what is needed, or else the best one."""
-    best = _widest_enough(name, model, exact, replace(need, loss=need.loss * FROM_WIDTH))
+    """The table of fewest texels that does what is needed, or else one that comes close to the best."""
+    wide = _wide_enough(name, model, exact, replace(need, loss=need.loss * FROM_WIDTH))
+    allowed = max(1.0, CLOSE * part_lost(wide, exact, need))
     last = len(exact.theta_r) - 1
     for step in (s for s in range(last, 1, -1) if last % s == 0):
-        table = table_of(name, model, exact, best.width, best.warp, step)
-        if table and part_lost(table, exact, need) <= 1:
+        table = table_of(name, model, exact, wide.width, wide.warp, step)
+        if table and part_lost(table, exact, need) <= allowed:
             return table
-    return best
+    return wide
 
 
-def _widest_enough(name: str, model: str, exact: SmoothRows, need: Need) -> Table:
-    best: tuple[float, Table] | None = None
+def _wide_enough(name: str, model: str, exact: SmoothRows, need: Need) -> Table:
+    """The narrowest table of all rows that does what is needed, or comes close to the best."""
+    found: list[tuple[float, Table]] = []
     for width in WIDTHS:
-        for exponent in EXPONENTS:
-            table = table_of(name, model, exact, width, Warp("octaves", 2.0**exponent), 1)
-            if not table:
-                continue
-            lost = part_lost(table, exact, need)
-            if best is None or lost < best[0]:
-                best = lost, table
-        if best and best[0] <= 1:
-            break
-    if best is None:
+        tried = [
+            table_of(name, model, exact, width, Warp("octaves", 2.0**exponent), 1) for exponent in EXPONENTS
+        ]
+        lost = [(part_lost(table, exact, need), table) for table in tried if table]
+        if lost:
+            found.append(min(lost, key=lambda one: one[0]))
+            if found[-1][0] <= 1:
+                return found[-1][1]
+    if not found:
         raise HairlutError(f"{model}/{name}: its light is too narrow for a table of 32-bit floats")
-    return best[1]
+    allowed = CLOSE * min(lost for lost, _ in found)
+    return next(table for lost, table in found if lost <= allowed)
 
 
 def part_lost(table: Table, exact: SmoothRows, need: Need) -> float:

@@ -100,11 +100,37 @@ def test_a_missing_licence_is_noticed():
 
 
 @pytest.fixture(scope="module")
-def sources() -> list[str]:
-    """The source files that git knows, or that it would add."""
+def files() -> list[str]:
+    """The files that git knows, or that it would add."""
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, text=True,
                             capture_output=True, check=False)  # fmt: skip
     if listed.returncode != 0:
         pytest.skip("not a git checkout")
-    names = [name for name in listed.stdout.splitlines() if (ROOT / name).is_file()]
-    return [name for name in names if Path(name).suffix in SOURCES or Path(name).name == "CMakeLists.txt"]
+    return [name for name in listed.stdout.splitlines() if (ROOT / name).is_file()]
+
+
+@pytest.fixture(scope="module")
+def sources(files) -> list[str]:
+    return [name for name in files if Path(name).suffix in SOURCES or Path(name).name == "CMakeLists.txt"]
+
+
+PROGRAMS = (
+    *(b"\x7fELF", b"MZ", b"!<arch>\n", b"\x64\x86", b"\x64\xaa"),  # Linux; Windows; archives; objects of MSVC
+    *(b"\xcf\xfa\xed\xfe", b"\xce\xfa\xed\xfe", b"\xca\xfe\xba\xbe"),  # macOS
+)
+
+
+def is_program(path: Path) -> bool:
+    """Whether a file begins as programs, libraries and object files do."""
+    return path.read_bytes().startswith(PROGRAMS)
+
+
+def test_no_program_or_object_file_is_kept(files):
+    assert [name for name in files if is_program(ROOT / name)] == []
+
+
+def test_an_object_file_is_noticed(tmp_path):
+    (tmp_path / "table").write_bytes(b"\x7fELF\2\1\1" + bytes(9))
+    (tmp_path / "table.c").write_text("int table;\n")
+    assert is_program(tmp_path / "table")
+    assert not is_program(tmp_path / "table.c")

@@ -173,7 +173,7 @@ def test_steps_are_equal_factors_over_a_wide_range_and_corners_have_both_ends():
     assert values[1:] / values[:-1] == pytest.approx(10**0.5)
     assert given.steps(1, 3) == pytest.approx([0, 0.5, 1])
     corners = np.array(given.corners())
-    assert len(corners) == box.CORNERS
+    assert len(corners) == given.effort.corners
     assert (corners.min(axis=0) == [0.1, 0, 0, 0, 0]).all()
     assert (corners.max(axis=0) == [10, 1, 1, 1, 1]).all()
     assert json.dumps(given.named(given.standard)) == '{"a": 1, "b": 0, "c": 0, "d": 0, "e": 0}'

@@ -193,7 +193,7 @@ def main() -> int:
         results[f"{tolerance:g}"] = row = fitted(tolerance, given)
         print(f"tolerance {tolerance:g}: {row['bytes']} bytes, samples {row['samples']}", flush=True)
         write_whole(args.data, f"{json.dumps(results, indent=1)}\n".encode())
-    print(write_whole(PAGES / "parameters.md", parameters_page.page(results).encode()))
+    print(write_whole(PAGES / "parameters.md", parameters_page.page(results, PLACES, POINTS[0]).encode()))
     return 0
 
 

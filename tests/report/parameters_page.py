@@ -12,9 +12,10 @@ TEXT = """# One model for every strand
 
 `hairlut fit precompute/examples/chiang_parameters.py` makes one model of Chiang's hair over longitudinal
 roughness (beta_m, 0.05 to 0.6), azimuthal roughness (beta_n, 0.1 to 0.6) and absorption (0.05 to 5). The
-numbers below are of its textures, read through the C library, at 1000 random parameters, viewers theta_r
-(within 89.9 degrees), and two offsets each, by a midpoint rule of 384 x 384 directions: a quadrature that the
+numbers below are of its textures, read through the C library, at {places} random parameters, viewers theta_r
+(within 89.9 degrees) and offsets, by a midpoint rule of {points} x {points} directions: a quadrature that the
 fit has no part in. The authors' sampler chooses a lobe by its attenuation and draws both angles exactly.
+Seconds are of one core.
 
     PYTHONPATH=tests .venv/bin/python -m report.parameters
 
@@ -38,10 +39,10 @@ quantiles is such a lobe, a blend of densities is not.
 """
 
 
-def page(results: dict[str, dict]) -> str:
+def page(results: dict[str, dict], places: int, points: int) -> str:
     """The page in Markdown."""
     rows = [results[key] for key in sorted(results, key=float, reverse=True)]
-    return "\n".join([TEXT + _sizes(rows), _axes(results), _ways(rows)])
+    return "\n".join([TEXT.format(places=places, points=points) + _sizes(rows), _axes(results), _ways(rows)])
 
 
 def _sizes(rows: list[dict]) -> str:

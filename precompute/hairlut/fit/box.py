@@ -13,22 +13,23 @@ import numpy as np
 
 from ..axes import Parameter
 from ..lobes import Array
+from .boxeffort import FULL, BoxEffort
 from .cells import Density
 from .hair import Hair, of_density
 
 Place = tuple[float, ...]
-CORNERS = 8  # of the box at most, that are looked at
 RATIO = 4.0  # of the ends of a range from which on steps along it are equal factors
 
 
 @dataclass(frozen=True)
 class Box:
     """density: of (theta_r, theta_i, phi, offset, **parameters) per rad^2. hair: its symmetry and ranges at
-    all places, with the density at the standard one."""
+    all places, with the density at the standard one. effort: how much of it a fit looks at."""
 
     density: Callable[..., Array]
     parameters: tuple[Parameter, ...]
     hair: Hair
+    effort: BoxEffort = FULL
 
     @property
     def standard(self) -> Place:
@@ -50,10 +51,11 @@ class Box:
     def corners(self) -> list[Place]:
         """Corners of the box: all of them, or some that have every parameter at both ends."""
         ends = [(p.least, p.most) for p in self.parameters]
-        if 2 ** len(ends) <= CORNERS:
+        most = self.effort.corners
+        if 2 ** len(ends) <= most:
             return list(product(*ends))
         random = np.random.default_rng(0)
-        bits = [*random.integers(0, 2, (CORNERS // 2, len(ends)))]
+        bits = [*random.integers(0, 2, (most // 2, len(ends)))]
         return [
             tuple(end[b] for end, b in zip(ends, row, strict=True))
             for half in bits

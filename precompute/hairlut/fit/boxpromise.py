@@ -14,7 +14,7 @@ from ..model import BakedModel
 from . import cells, promise
 from .box import Box
 
-PLACES, OFFSETS = 384, 4
+OFFSETS = 4
 PAIRS = 48  # places at which an axis' part of the loss is measured
 
 
@@ -36,10 +36,9 @@ def measured(
     model: BakedModel,
     random: np.random.Generator,
     report: Callable[[float], None] = lambda share: None,
-    count: int = PLACES,
 ) -> Measured:
-    """The losses at `count` random places, each coordinate in even strata of its own."""
-    places = _places(box, count, random)
+    """The losses at random places, each coordinate in even strata of its own."""
+    places = _places(box, box.effort.places, random)
     return Measured(*places, *_at(box, model, *places, random, report))
 
 

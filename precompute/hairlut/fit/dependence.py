@@ -17,8 +17,8 @@ from . import shapes
 from .box import Box, Place, with_value
 from .shapes import BOTH, NEITHER, PHI, THETA, Shapes
 
-STEPS = 9  # values of a parameter along which lobes are followed
-JOINED = 3, 5, 8  # numbers of those that are fitted together with the first, to see if they may be
+JOINED = 0.4, 0.65, 1.0
+"""Parts of the way along a parameter at which values are fitted together with the first."""
 HOPELESS = 2.0  # V of shapes that are kept from the anchor, at which they are no start for that
 SLACK = 0.004  # of V by which shapes that are fixed may lose
 
@@ -50,7 +50,7 @@ def dependence(box: Box, anchor: Shapes, report: Callable[[float], None]) -> Dep
     on_theta, on_phi, along = [], [], {}
     for p in (p for p in range(count) if p not in kept):
         report(0.5 + p / (2 * count))
-        values = _from(box.steps(p, STEPS), places[0][p])
+        values = _from(box.steps(p, box.effort.steps), places[0][p])
         on, found = _least(box, base, p, values)
         on_theta += [p] * on[0]
         on_phi += [p] * on[1]
@@ -65,17 +65,18 @@ def _from(values: np.ndarray, start: float) -> np.ndarray:
 
 def _together(box: Box, base: Shapes, parameter: int) -> Shapes | None:
     """The shapes that more values of a parameter have together, if these lose no more than each alone."""
-    values = _from(box.steps(parameter, STEPS), base.places[0][parameter])
+    values = _from(box.steps(parameter, box.effort.steps), base.places[0][parameter])
     one = _one_place(base, 0)
     fixed = _followed(box, one, parameter, values, NEITHER, HOPELESS)
-    if len(fixed) < STEPS:
+    if len(fixed) < len(values):
         return None
-    more = [fixed[i] for i in JOINED]
+    numbers = [round(part * (len(values) - 1)) for part in JOINED]
+    more = [fixed[i] for i in numbers]
     starts = [*base.rows, *(row for there in more for row in there.rows)]
     places = base.places + tuple(there.places[0] for there in more)
     together = shapes.joined(box, one, places, starts, BOTH)
     free = _followed(box, one, parameter, values, BOTH)
-    for number, i in enumerate(JOINED, len(base.places)):
+    for number, i in enumerate(numbers, len(base.places)):
         if _one_place(together, number).variance() > free[i].variance() + SLACK:
             return None
     return together

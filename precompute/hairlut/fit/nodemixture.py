@@ -27,8 +27,7 @@ from .lobesfit import Row, same_shapes
 from .shapes import Shapes
 from .turning import TWO_PI
 
-STEPS = 9  # values of a parameter that are candidates
-CELLS, MOST_PHI = 32, 144  # of theta_i and phi: shapes are known, and cells need not resolve them
+MOST_PHI = 144  # cells of phi: shapes are known, and cells need not resolve them
 FEW_OFFSETS = 13  # by which dependences are found
 VIEWERS = np.array([-0.96, -0.7, -0.35, 0.0, 0.35, 0.7, 0.96])  # parts of the largest theta_r
 GRAZING = np.array([15.0, 1.0, 1.0, 1.0, 1.0, 1.0, 15.0])
@@ -70,9 +69,9 @@ class Fitting:
         box, offset = self._box, np.sin(self._angle)
         density, named = box.density_at(place), box.named(place)
         some = offset[np.unique([0, len(offset) // 2, max(len(offset) - 2, 0)])]
-        edges = cells.theta_edges(density, self._theta_r, some, CELLS)
+        edges = cells.theta_edges(density, self._theta_r, some, box.effort.theta_i)
         viewers = self._theta_r[np.unique([0, len(self._theta_r) // 2, len(self._theta_r) - 1])]
-        m = min(cells.phi_count(density, viewers, offset[:-1][::6]), MOST_PHI)
+        m = min(cells.phi_count(density, viewers, offset[:-1][::6]), MOST_PHI, box.effort.most_phi)
         lobes = [BakedLobe(x.name, x.theta.at(named), x.phi and x.phi.at(named)) for x in self._lobes]
         rows = []
         variance = []
@@ -113,7 +112,7 @@ def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tu
     anchor = start.places[0]
     low, high = box.hair.theta_r
     theta_r = (low + high) / 2 + VIEWERS * (high - low) / 2
-    angle = box.hair.angles(FEW_OFFSETS)
+    angle = box.hair.angles(min(FEW_OFFSETS, box.effort.offset))
     fitting = Fitting(box, lobes, theta_r, angle, start.turning)
     first = fitting.at(anchor, of_shapes(start, theta_r, angle))
     found = []
@@ -151,7 +150,8 @@ def mixture(
             most = allowed[box.parameters[p].name] * 2**doublings
             kept[p] = _nodes_along(box, fitting, first, anchor, p, bend, most)
         count = np.prod([len(kept[p][0]) for p in axes])
-        if 8 * len(lobes) * count * len(theta_r) * len(angle) / THINNED <= BYTES:
+        size = 8 * len(lobes) * count * len(theta_r) * len(angle) / THINNED
+        if size <= BYTES and count <= box.effort.nodes:
             break
     done: dict[tuple[int, ...], Lit] = {} if axes else {(): first}
     order = sorted(product(*(range(len(kept[p][0])) for p in axes)), key=sum)
@@ -186,7 +186,7 @@ def _nodes_along(
     box: Box, fitting: Fitting, first: Lit, anchor: Place, p: int, bend: Array, allowed: float
 ) -> tuple[Array, list[Lit]]:
     """The nodes of one parameter, from the anchor's end on, and what is there."""
-    values = box.steps(p, STEPS)
+    values = box.steps(p, box.effort.steps)
     values = values if values[0] == anchor[p] else values[::-1]
     along = [first]
     for value in values[1:]:

@@ -10,27 +10,26 @@ lasts."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 
 from ..axes import MAX_AXES
 from ..errors import HairlutError
+from ..lobes import HALF_PI, Array
 from ..model import BakedModel
-from . import boxpromise, dependence, nodemixture, nodeshapes, nodetables, shapes
+from . import boxeffort, boxpromise, cells, dependence, effort, nodemixture, nodeshapes, nodetables, shapes
 from .box import Box, Place
+from .boxeffort import BoxEffort
 from .boxpromise import Measured
 from .dependence import Dependence
 from .refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS
 from .shapes import Shapes
 
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
-START = {"theta_r": 49, "offset": 25}
-COARSE = {"theta_r": 25, "offset": 13}
 LIMITS = {"theta_r": 145, "offset": 65}
 TWELVES = 12  # rows of theta_r are so many intervals, times a whole number
-SLOW = 27.0  # times as long as the anchor a fit takes for each parameter, about
 RARE = 5.0  # times the tolerance that the worst hundredth of places may lose
 
 Report = Callable[[str, float], None]
@@ -60,24 +59,20 @@ def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float,
     take, about."""
     start = perf_counter()
     random = np.random.default_rng(0)
+    box = replace(box, effort=_effort(box, budget))
     place, count = shapes.first_anchor(box, lobes, lambda share: report("choosing lobes", share))
-    began = perf_counter()
-    anchor = _anchor(box, place, count, START["theta_r"], report)
-    slow = SLOW * len(box.parameters) * (perf_counter() - began) > budget - (perf_counter() - start)
-    counts = dict(COARSE if slow else START)
-    if slow:
-        anchor = shapes.of_rows(anchor, tuple(range(0, START["theta_r"], 2)))
+    counts = {"theta_r": box.effort.rows, "offset": box.effort.offset}
+    anchor = _anchor(box, place, count, counts["theta_r"], report)
     found = _dependence(box, anchor, report)
     allowed = {axis: NODE_PART * tolerance for axis in (*counts, *(p.name for p in box.parameters))}
     best: FittedBox | None = None
     while True:
         began = perf_counter()
-        last = start + budget if best else np.inf
-        so_far = _report(report, best, last)
+        so_far, until = _report(report, best), _until(box, start + budget) if best else box
         try:
             if anchor.theta_r.size != counts["theta_r"]:
-                anchor = _anchor(box, place, count, counts["theta_r"], so_far)
-            fitted = _fit_once(box, name, anchor, found, counts, allowed, tolerance, random, so_far)
+                anchor = _anchor(until, place, count, counts["theta_r"], so_far)
+            fitted = _fit_once(until, name, anchor, found, counts, allowed, tolerance, random, so_far)
         except _OutOfTime:
             return best
         if best is None or _score(fitted) < _score(best):
@@ -86,6 +81,19 @@ def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float,
         if finer is None or perf_counter() + (perf_counter() - began) > start + budget:
             return best
         counts, allowed = finer
+
+
+def _effort(box: Box, budget: float) -> BoxEffort:
+    """What the budget allows, by the corner that needs most cells of the azimuth."""
+    theta_r, offset = np.array([0.4]), np.sin(box.hair.angles(box.effort.fitted_offsets))
+    corners = replace(box, effort=boxeffort.EFFORTS[-1]).corners()
+    phi = max(cells.phi_count(box.density_at(place), theta_r, offset[:1]) for place in corners)
+    edges = np.linspace(-HALF_PI, HALF_PI, box.effort.theta_i + 1)[None]
+    began = perf_counter()
+    mass = cells.of_density(box.hair.density, theta_r, offset, edges, phi).mass
+    value = (perf_counter() - began) / (mass.size * cells.GAUSS.size**2)
+    pace = replace(effort.pace(box.hair), value=value)
+    return boxeffort.affordable(pace, len(box.parameters), box.hair.offsets, phi, budget)
 
 
 def limits(found: FittedBox, tolerance: float) -> list[str]:
@@ -128,12 +136,21 @@ def _score(found: FittedBox) -> float:
     return float(v.mean() + np.quantile(v, 0.99) / RARE)
 
 
-def _report(report: Report, best: FittedBox | None, last: float) -> Report:
-    """Reports V so far, and ends the work after the time `last`."""
+def _until(box: Box, last: float) -> Box:
+    """The box, with a density that ends the work after the time `last`."""
 
-    def so_far(stage: str, share: float) -> None:
+    def density(*at: Array, **parameters: float) -> Array:
         if perf_counter() > last:
             raise _OutOfTime
+        return box.density(*at, **parameters)
+
+    return replace(box, density=density)
+
+
+def _report(report: Report, best: FittedBox | None) -> Report:
+    """Reports V so far."""
+
+    def so_far(stage: str, share: float) -> None:
         reached = f"V {best.measured.variance.mean():.4f} so far, " if best else ""
         report(f"{reached}{stage}", share)
 

@@ -16,15 +16,13 @@ from ..lobes import Array
 from ..mixture import wrap
 from . import cells, tied
 from .box import Box, Place
+from .boxeffort import PARTS
 from .lobesfit import Row, first_row, one_more
 from .refine import GAIN, MAX_LOBES, PART, bright_parts, fit_rows
 from .tied import Block
 from .turning import TWO_PI
 
-OFFSETS = 9  # by which shapes are fitted
-CELLS = 32  # of theta_i
-SWEEPS = 24
-JOINT = 24  # sweeps of all places that have the same shapes
+JOINT = 24  # sweeps of rows that get the same azimuths
 BOTH, THETA, PHI, NEITHER = (True, True), (True, False), (False, True), (False, False)
 
 
@@ -90,7 +88,7 @@ def first_anchor(box: Box, lobes: int | None, report: Callable[[float], None]) -
 
 def _needed(box: Box, place: Place, lobes: int | None) -> tuple[int, float]:
     """(lobes that gain at a place, V with one fewer)."""
-    angle = box.hair.angles(OFFSETS)
+    angle = box.hair.angles(box.effort.fitted_offsets)
     viewers = box.hair.rows(13)[[4, 8]]
     edges = _edges(box, (place,), viewers, angle)
     blocks = _blocks(box, (place,), viewers, angle, edges, False)
@@ -110,9 +108,10 @@ def at_anchor(
     box: Box, place: Place, count: int, turning: bool, rows: int, report: Callable[[float], None]
 ) -> Shapes:
     """The lobes of so many rows of theta_r at one place, from nothing."""
-    angle, theta_r = box.hair.angles(OFFSETS), box.hair.rows(rows)
+    angle, theta_r = box.hair.angles(box.effort.fitted_offsets), box.hair.rows(rows)
     edges = _edges(box, (place,), theta_r, angle)
-    m = cells.phi_count(box.density_at(place), theta_r[list(some(rows))], np.sin(angle))
+    viewers = theta_r[list(some(rows))]
+    m = min(cells.phi_count(box.density_at(place), viewers, np.sin(angle)), box.effort.most_phi)
     data = cells.of_density(box.density_at(place), theta_r, np.sin(angle), edges, m)
     fitted = fit_rows(data, angle, count, turning, report)
     blocks = [Block(mass, j, j) for j, mass in enumerate(data.mass)]
@@ -121,7 +120,7 @@ def at_anchor(
 
 def turns(box: Box, place: Place, count: int) -> bool:
     """Whether so many lobes lose more at a place where they may not turn."""
-    angle, theta_r = box.hair.angles(OFFSETS), box.hair.rows(3)[1:2]
+    angle, theta_r = box.hair.angles(box.effort.fitted_offsets), box.hair.rows(3)[1:2]
     edges = _edges(box, (place,), theta_r, angle)
     mass = _blocks(box, (place,), theta_r, angle, edges, False)[0].mass
     free, fixed = (first_row(mass, angle, count, turning).variance(mass) for turning in (True, False))
@@ -129,8 +128,8 @@ def turns(box: Box, place: Place, count: int) -> bool:
 
 
 def some(rows: int) -> tuple[int, ...]:
-    """Numbers of the rows by which dependences are found: at grazing angles hair is unlike elsewhere."""
-    return tuple(round((rows - 1) * part) for part in (1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6))
+    """Numbers of the rows by which dependences are found."""
+    return tuple(round((rows - 1) * part) for part in PARTS)
 
 
 def of_rows(shapes: Shapes, kept: tuple[int, ...]) -> Shapes:
@@ -153,9 +152,7 @@ def with_common_azimuths(shapes: Shapes) -> Shapes:
     return there.improved(JOINT, BOTH, shapes.turning)
 
 
-def followed(
-    box: Box, before: Shapes, places: tuple[Place, ...], moving: tuple[bool, bool], sweeps: int = SWEEPS
-) -> Shapes:
+def followed(box: Box, before: Shapes, places: tuple[Place, ...], moving: tuple[bool, bool]) -> Shapes:
     """The shapes at other places, as many as before, that start from those before."""
     edges = _edges(box, places, before.theta_r, before.angle)
     blocks = _blocks(box, places, before.theta_r, before.angle, edges, before.tied)
@@ -172,7 +169,7 @@ def followed(
     there = replace(
         before, places=places, edges=edges, blocks=blocks, rows=tied.started(blocks, rows, moving)
     )
-    return there.improved(sweeps, moving, before.turning)
+    return there.improved(box.effort.sweeps, moving, before.turning)
 
 
 def joined(
@@ -191,7 +188,7 @@ def joined(
         replace(start, theta=known[i % count][0], phi=known[i % count][1]) for i, start in enumerate(starts)
     ]
     there = replace(first, places=places, edges=edges, blocks=blocks, rows=rows)
-    return there.improved(JOINT, moving, first.turning)
+    return there.improved(box.effort.sweeps, moving, first.turning)
 
 
 def starts_like(first: Shapes, like: Shapes, numbers: list[int]) -> list[Row]:
@@ -220,7 +217,7 @@ def starts_like(first: Shapes, like: Shapes, numbers: list[int]) -> list[Row]:
 
 def _edges(box: Box, places: tuple[Place, ...], theta_r: Array, angle: Array) -> Array:
     offset = np.sin(angle[np.unique([0, len(angle) // 2, max(len(angle) - 2, 0)])])
-    return cells.theta_edges(box.mean_density(places), theta_r, offset, CELLS)
+    return cells.theta_edges(box.mean_density(places), theta_r, offset, box.effort.theta_i)
 
 
 def _blocks(
@@ -229,6 +226,7 @@ def _blocks(
     offset = np.sin(angle)
     viewers = theta_r[np.unique([0, len(theta_r) // 2, len(theta_r) - 1])]
     m = max(cells.phi_count(box.density_at(place), viewers, offset[:-1][::2]) for place in places)
+    m = min(m, box.effort.most_phi)
     return [
         Block(mass, j, 0 if tied_rows else j)
         for place in places

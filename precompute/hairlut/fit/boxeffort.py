@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How much of a box of hairs a budget of seconds lets a fit look at: the counts of its first round."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .cells import GAUSS
+from .effort import Pace
+
+FIRST_ROUND = 0.8  # of the budget
+CHOICE = 400  # sweeps of a block while the number of lobes is chosen
+SWEEP = 7.0  # steps of factor.py that a sweep of turned lobes takes as long as
+SHARES = 20  # of a block whose shares and turns alone are fitted
+PARTS = 1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6
+"""Parts of the way through the rows at which dependences are found: grazing, hair is unlike elsewhere."""
+MODES = 3.0  # times that lobes are followed along a parameter
+TOGETHER = 3.0  # places that are fitted together
+NODES = 8.0  # of a parameter
+MIXED = 12.0  # of the mixture
+
+
+@dataclass(frozen=True)
+class BoxEffort:
+    """rows: of theta_r; offset: of the mixture; fitted_offsets: by which shapes are fitted; theta_i: cells;
+    most_phi: cells of the azimuth, at most; steps: values of a parameter along which lobes are followed;
+    sweeps: of a block's lobes; corners: of the box that are looked at; places: that are measured; nodes: of
+    the mixture, all its parameters together."""
+
+    rows: int = 49
+    offset: int = 25
+    fitted_offsets: int = 9
+    theta_i: int = 32
+    most_phi: int = 384
+    steps: int = 9
+    sweeps: int = 24
+    corners: int = 8
+    places: int = 384
+    nodes: int = 512
+
+
+FULL = BoxEffort()
+EFFORTS = (
+    FULL,
+    BoxEffort(25, 13, 9, 24, 192, 9, 16, 8, 192, 96),
+    BoxEffort(13, 9, 7, 24, 96, 5, 12, 4, 96, 32),
+    BoxEffort(13, 7, 5, 16, 64, 5, 8, 2, 48, 12),
+)
+"""From full to least."""
+
+
+def affordable(pace: Pace, parameters: int, offsets: bool, phi: int, budget: float) -> BoxEffort:
+    """The largest effort whose first round fits its part of the budget, or the least; phi: cells of the
+    azimuth at full effort."""
+    return next(
+        (e for e in EFFORTS if seconds(pace, e, parameters, offsets, phi) < FIRST_ROUND * budget), EFFORTS[-1]
+    )
+
+
+def seconds(pace: Pace, effort: BoxEffort, parameters: int, offsets: bool, phi: int) -> float:
+    """What the first round will take, about."""
+    cells = effort.theta_i * min(phi, effort.most_phi) * (effort.fitted_offsets if offsets else 1)
+    along = parameters * effort.steps * MODES * len(PARTS) * TOGETHER
+    shares = MIXED * effort.rows * (effort.offset / effort.fitted_offsets if offsets else 1)
+    blocks = 2 * effort.corners + along + NODES * effort.rows * 2 + shares
+    sweeps = 2 * effort.corners * CHOICE + (along + NODES * effort.rows * 2) * effort.sweeps + shares * SHARES
+    return cells * (sweeps * SWEEP * pace.cell + blocks * GAUSS.size**2 * pace.value)

@@ -2,7 +2,7 @@
 """Fits every hair of hairs.py and measures the textures through the C library, by a quadrature that the fit
 has no part in; the page is fits_page.py's.
 
-    PYTHONPATH=tests .venv/bin/python -m report.fits [--hair NAME]...      a quarter of an hour of one core
+    PYTHONPATH=tests .venv/bin/python -m report.fits [--hair NAME]...      five to ten minutes of one core
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ POINTS = 432, 384
 BRIGHT = 1e-4
 TOLERANCE, BUDGET = 0.01, 600.0
 DATA = PAGES / "fit.json"
+WEIGHTS = PAGES / "fit_weights.md"  # by weights.py
 
 
 def measured(subject: Subject) -> dict:
@@ -55,24 +56,25 @@ def measured(subject: Subject) -> dict:
         "limits": refine.limits(found, TOLERANCE),
         **kept,
     }
-    return row | ({"own": quadrature(subject, subject.own)} if subject.own else {})
+    if subject.own:
+        row["own"] = quadrature(subject, subject.own)
+    if subject.parts:
+        row["parts"] = at_random_offsets(subject)
+    return row
 
 
 def quadrature(subject: Subject, pdf) -> dict:
     """V at each viewer, the mean over offsets, the largest weight, and the variance of one draw's estimate
     in lamps, at a random offset, by midpoints."""
-    n, m = POINTS
-    theta_i = ((np.arange(n) + 0.5) / n - 0.5)[:, None] * np.pi
-    phi = (np.arange(m) + 0.5) / m * 2 * np.pi
-    size = np.pi / n * 2 * np.pi / m
+    theta_i, phi, size = directions()
     lamps = light(theta_i, phi)
     offsets = OFFSETS if subject.offsets else np.zeros(1)
     variance, weight, in_lamps = [], 0.0, []
     for theta_r in VIEWERS:
         here, first, second = [], 0.0, 0.0
         for offset in offsets:
-            p = np.broadcast_to(subject.density(theta_r, theta_i, phi, offset), (n, m))
-            q = np.broadcast_to(np.asarray(pdf(theta_r, theta_i, phi, offset), float), (n, m))
+            p = np.broadcast_to(subject.density(theta_r, theta_i, phi, offset), POINTS)
+            q = np.broadcast_to(np.asarray(pdf(theta_r, theta_i, phi, offset), float), POINTS)
             total = p.sum() * size
             square = p * (p / np.maximum(q, 1e-300))
             here.append(square.sum() * size / total**2 - 1)
@@ -84,6 +86,29 @@ def quadrature(subject: Subject, pdf) -> dict:
         variance.append(float(np.mean(here)))
         in_lamps.append(float(second / first**2 * len(offsets) - 1))
     return {"variance": variance, "weight": weight, "lamps": in_lamps}
+
+
+def at_random_offsets(subject: Subject) -> dict:
+    """V, and the variance in lamps, of one draw by the authors' sampler at a random one of the offsets that a
+    hair is the mean of: a pixel that is wider than the fibre."""
+    theta_i, phi, size = directions()
+    found: dict[str, list[float]] = {"variance": [], "lamps": []}
+    for theta_r in VIEWERS:
+        for name, radiance in (("variance", 1.0), ("lamps", light(theta_i, phi))):
+            moments = [
+                ((p * radiance).sum() * size, (p * p / np.maximum(q, 1e-300) * radiance**2).sum() * size)
+                for p, q in subject.parts(theta_r, theta_i, phi)
+            ]
+            first, second = np.mean(moments, axis=0)
+            found[name].append(float(second / first**2 - 1))
+    return found
+
+
+def directions():
+    """(theta_i (n, 1), phi (m,), the rad^2 of each) by midpoints."""
+    n, m = POINTS
+    theta_i = ((np.arange(n) + 0.5) / n - 0.5)[:, None] * np.pi
+    return theta_i, (np.arange(m) + 0.5) / m * 2 * np.pi, np.pi / n * 2 * np.pi / m
 
 
 def light(theta_i, phi):
@@ -111,7 +136,8 @@ def main() -> int:
             subject.name, f"V {np.mean(shown['variance']):.4f}", f"weight {shown['weight']:.1f}", flush=True
         )
         write_whole(args.data, f"{json.dumps(results, indent=1)}\n".encode())
-    print(write_whole(PAGES / "fit.md", fits_page.page(results).encode()))
+    weights = WEIGHTS.read_text(encoding="utf-8") if WEIGHTS.exists() else ""
+    print(write_whole(PAGES / "fit.md", fits_page.page(results, weights).encode()))
     return 0
 
 

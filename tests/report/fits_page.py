@@ -34,11 +34,11 @@ perfect, so that 1 + V is what the textures cost. Targets: at most {SAMPLES} tim
 {LAMPS} times its variance, all viewers together. """
 
 
-def page(results: dict[str, dict]) -> str:
-    """The page in Markdown."""
+def page(results: dict[str, dict], weights: str = "") -> str:
+    """The page in Markdown; weights: the part of weights.py."""
     near = {name: row for name, row in results.items() if "own" in row}
     far = {name: row for name, row in results.items() if "own" not in row}
-    return TEXT.format(offsets=5) + _near(near) + _far(far)
+    return TEXT.format(offsets=5) + _near(near) + _far(far) + _averaged(far) + weights
 
 
 def _near(rows: dict[str, dict]) -> str:
@@ -149,3 +149,30 @@ def _far(rows: dict[str, dict]) -> str:
         f"Targets: V of at most {FAR_VARIANCE} at every viewer, weights up to {WEIGHT:.0f}.\n\n"
         + table(columns, shown)
     )
+
+
+AVERAGED = """
+## A pixel wider than a fibre
+
+A hair that is the mean over its offsets scatters what a pixel sees that is wider than the fibre. The authors'
+sampler takes a random offset, then draws for it, and its estimate varies with the offset. The textures are
+fitted to the mean itself, whose value the renderer must know (a table of it, or a far-field model). Samples
+for the same error, authors = 1, all viewers together and the extremes of the viewers:
+
+"""
+
+
+def _averaged(rows: dict[str, dict]) -> str:
+    """Fits of averages over offsets beside draws at random offsets."""
+    shown = []
+    for name, row in rows.items():
+        if "parts" in row:
+            cells = [name]
+            for what in ("variance", "lamps"):
+                ratio = (1 + np.array(row[what])) / (1 + np.array(row["parts"][what]))
+                together = (1 + np.mean(row[what])) / (1 + np.mean(row["parts"][what]))
+                cells.append(f"{together:.3f} ({ratio.min():.3f} to {ratio.max():.3f})")
+            shown.append(tuple(cells))
+    if not shown:
+        return ""
+    return AVERAGED + table(("hair", "in constant light", "in a sky with a window and a lamp"), shown)

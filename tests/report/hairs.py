@@ -23,12 +23,14 @@ AVERAGED = 24  # offsets on each side of the fibre
 
 @dataclass(frozen=True)
 class Subject:
-    """density(theta_r, theta_i, phi, offset) per rad^2; own: that of the authors' sampler, or None."""
+    """density(theta_r, theta_i, phi, offset) per rad^2; own: that of the authors' sampler, or None. parts: of
+    a hair that is an average over offsets, (density, own) at each of those, for the same arguments."""
 
     name: str
     density: Callable
     offsets: bool
     own: Callable | None = None
+    parts: Callable | None = None
 
 
 class Chiang:
@@ -94,9 +96,7 @@ def near_field() -> list[Subject]:
 def far_field() -> list[Subject]:
     """Hairs without offsets."""
     subjects = [Subject(f"karis {rough}", karis(rough), False) for rough in (0.3, 0.5)]
-    subjects += [
-        Subject(f"averaged chiang {m} {n}", averaged(m, n, 0.6), False) for m, n in ((0.3, 0.3), (0.1, 0.3))
-    ]
+    subjects += [averaged(m, n, 0.6) for m, n in ((0.3, 0.3), (0.1, 0.3))]
     return [
         *subjects,
         Subject("dual scattering", dual_scattering, False),
@@ -141,16 +141,21 @@ def karis(rough: float) -> Callable:
     return density
 
 
-def averaged(beta_m: float, beta_n: float, absorption: float) -> Callable:
+def averaged(beta_m: float, beta_n: float, absorption: float) -> Subject:
     """Chiang's hair, the mean over the offsets of the whole fibre, even over its width."""
     hair = Chiang(beta_m, beta_n, absorption)
     offsets = (np.arange(AVERAGED) + 0.5) / AVERAGED
 
-    def density(theta_r, theta_i, phi, offset):
-        parts = (hair.density(theta_r, theta_i, side * phi, h) for h in offsets for side in (1, -1))
-        return sum(parts) / (2 * AVERAGED)
+    def parts(theta_r, theta_i, phi):
+        for h in offsets:
+            for side in (1, -1):
+                at = theta_r, theta_i, side * phi, h
+                yield hair.density(*at), hair.own(*at)
 
-    return density
+    def density(theta_r, theta_i, phi, offset):
+        return sum(p for p, _ in parts(theta_r, theta_i, phi)) / (2 * AVERAGED)
+
+    return Subject(f"averaged chiang {beta_m} {beta_n}", density, False, parts=parts)
 
 
 def dual_scattering(theta_r, theta_i, phi, offset):

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from report import fits_page
-from report.hairs import Chiang, far_field, near_field
+from report import fits, fits_page, weights
+from report.hairs import Chiang, Subject, far_field, near_field
 
 DRAWS = 40_000
 ALPHA = 1e-3
@@ -89,6 +89,34 @@ def near_row(**changes):
 def test_a_target_that_is_missed_is_named(changes, missed):
     line = fits_page.page({"chiang 0.3 0.3 0.6": near_row(**changes)}).splitlines()[-2]
     assert line.split(" | ")[-1].removesuffix(" |") == missed
+
+
+def test_a_random_offset_costs_the_spread_of_its_light():
+    """Two offsets, of which one scatters three times the light of the other, each drawn perfectly."""
+
+    def parts(theta_r, theta_i, phi):
+        for light in (1.0, 3.0):
+            p = np.broadcast_to(light * np.cos(theta_i) / (4 * np.pi), fits.POINTS)
+            yield p, p / light
+
+    found = fits.at_random_offsets(Subject("two", None, False, parts=parts))
+    assert found["variance"] == pytest.approx([(1 + 9) / 2 / 2**2 - 1] * len(fits.VIEWERS), rel=1e-4)
+
+
+def test_the_least_weight_is_the_least_mass_above_the_light():
+    p = np.array([[0.4, 0.1], [0.0, 0.5]])
+    one = np.array([[0.5], [0.5]])
+    every = np.ones((2, 2), bool)
+    assert weights.least_weight(p, one, every) == pytest.approx(0.4 / 0.5 + 0.5 / 0.5)
+    assert weights.least_weight(p, np.eye(2), every) == pytest.approx(1)
+    assert weights.least_weight(p, one, p < 0.45) == pytest.approx(0.4 / 0.5 + 0.1 / 0.5)
+
+
+def test_a_pixel_wider_than_a_fibre_is_on_the_page():
+    row = {k: v for k, v in near_row(lamps=[1.0] * 4).items() if k != "own"}
+    row["parts"] = {"variance": [0.34] * 4, "lamps": [1.0, 3.0, 3.0, 1.0]}
+    line = fits_page.page({"averaged": row}).split("## A pixel wider")[1]
+    assert "| averaged | 0.750 (0.750 to 0.750) | 0.667 (0.500 to 1.000) |" in line
 
 
 def test_a_far_field_hair_that_one_viewer_sees_badly_misses():

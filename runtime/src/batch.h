@@ -22,6 +22,11 @@ typedef struct hairlut_one {
                                   float u_lobe, float u_theta, float u_phi);
     float (*pdf_hair)(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset,
                       float theta_i, float phi_i);
+    /* of a model over parameters, which are not NULL */
+    hairlut_sample (*sample_strand)(const hairlut_model *model, const float *parameters, const float *shares, float theta_r,
+                                    float phi_r, float offset, float u_lobe, float u_theta, float u_phi);
+    float (*pdf_strand)(const hairlut_model *model, const float *parameters, const float *shares, float theta_r, float phi_r,
+                        float offset, float theta_i, float phi_i);
 } hairlut_one;
 
 /* One set of kernels; each member is a function of hairlut.h. */

@@ -54,13 +54,13 @@ static inline real find_node(const float *nodes, int count, real x, real *t)
 }
 
 /* The four corners around: offsets of the first lobe's floats at each, and the weights between. */
-typedef struct corners {
+typedef struct grid_corners {
     int low[LANES], low_above[LANES], high[LANES], high_above[LANES];
     real t, s;
-} corners;
+} grid_corners;
 
 /* Offsets stay below 2^24 (hairlut_validate_mixture), where floats count exactly. */
-static inline void find_corners(const hairlut_model *model, real theta_r, real arc, corners *c)
+static inline void find_corners(const hairlut_model *model, real theta_r, real arc, grid_corners *c)
 {
     const hairlut_mixture *m = &model->mixture;
     const int node = HAIRLUT_CORNER * model->lobe_count, above = m->rows > 1 ? node * m->columns : 0;
@@ -74,7 +74,7 @@ static inline void find_corners(const hairlut_model *model, real theta_r, real a
 }
 
 /* hairlut_blend_shares, and hairlut_blend_turns where lobes are turned */
-static inline real blend_corners(const hairlut_mixture *m, const corners *c, int lobe, real *turn)
+static inline real blend_corners(const hairlut_mixture *m, const grid_corners *c, int lobe, real *turn)
 {
     const float *at = m->corners + HAIRLUT_CORNER * lobe;
     real low[4], low_above[4], high[4], high_above[4];
@@ -123,7 +123,7 @@ static inline real mix_at(const hairlut_model *model, given_shares given, real t
     const int count = model->lobe_count, alone = is_alone(model);
     const real h = clamp(offset, all(-1.0f), all(1.0f));
     real sum = all(0.0f);
-    corners c;
+    grid_corners c;
     if (!alone)
         find_corners(model, theta_r, arcsine(mixture->mirrored ? magnitude(h) : h), &c);
     for (int k = 0; k < count; ++k) {

@@ -23,6 +23,7 @@ HAIRLUT_INLINE void hairlut_corners_of(const hairlut_node_grid *grid, const hair
 {
     int node = 0;
     corners->weight[0] = hairlut_quad_all(1.0f);
+    corners->weight[1] = hairlut_quad_all(0.0f); /* without axes: as if it had one */
     for (int a = 0; a < axes; ++a) {
         const hairlut_node place = places[grid->scale[a]];
         const hairlut_quad upper = hairlut_quad_all(place.t), lower = hairlut_quad_sub(hairlut_quad_all(1.0f), upper);

@@ -191,6 +191,12 @@ static void build_lobe(hairlut_lobe *lobe, const hairlut_lobe_desc *desc, table_
 
 static const size_t line = HAIRLUT_LINE * sizeof(float);
 
+/* The next place that begins a cache line. */
+static float *on_a_line(float *memory)
+{
+    return memory + (line - (uintptr_t)memory % line) % line / sizeof(float);
+}
+
 /* Tables of a table with axes: one for each node, and that of the standard values before them. */
 static size_t tables_of(const hairlut_table *table)
 {
@@ -203,7 +209,7 @@ static double bytes_of(const hairlut_model_desc *desc, const table_list *list)
 {
     double floats = (double)hairlut_mixture_floats(desc->mixture, desc->lobe_count);
     if (desc->parameter_count > 0)
-        floats += (double)sizeof(hairlut_strands) / sizeof(float) + (double)hairlut_strands_floats(desc) +
+        floats += (double)sizeof(hairlut_strands) / sizeof(float) + (double)hairlut_strands_floats(desc) + HAIRLUT_LINE +
                   (double)hairlut_fours_floats(desc->mixture, desc->lobe_count);
     for (int k = 0; k < list->count; ++k)
         floats += (double)hairlut_table_floats(&list->tables[k]) * (double)tables_of(&list->tables[k]);
@@ -236,6 +242,7 @@ static float *build_strands(hairlut_strands *strands, const hairlut_model_desc *
     for (int k = 0; k < list->count; ++k) {
         const hairlut_table *table = &list->tables[k];
         const int grid = hairlut_add_grid(strands, table->axes, table->axis_count, &next);
+        strands->pairs &= table->axis_count <= 1;
         list->nodes[k] = hairlut_space(strands, grid, table->axis_count > 0 ? (ptrdiff_t)hairlut_table_floats(table) : 0);
     }
     const int grid = hairlut_add_grid(strands, desc->mixture->axes, desc->mixture->axis_count, &next);
@@ -244,7 +251,7 @@ static float *build_strands(hairlut_strands *strands, const hairlut_model_desc *
         strands->theta[k] = list->nodes[index_of(list, lobe->theta)];
         strands->phi[k] = list->nodes[index_of(list, lobe->phi ? lobe->phi : lobe->theta)];
     }
-    fours = memory + hairlut_strands_floats(desc);
+    fours = on_a_line(memory + hairlut_strands_floats(desc));
     hairlut_build_fours(strands, desc->mixture, desc->lobe_count, grid, fours);
     return fours + hairlut_fours_floats(desc->mixture, desc->lobe_count);
 }
@@ -262,7 +269,7 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
         nodes = hairlut_space(strands, strands->mixture.grid, 1);
         corners = hairlut_standard_corners(strands, nodes.grid);
     }
-    next += (line - (uintptr_t)next % line) % line / sizeof(float);
+    next = on_a_line(next);
     for (int k = 0; k < list->count; ++k)
         next = build_table(list, k, strands, next);
     number_grids(list);

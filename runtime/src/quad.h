@@ -348,8 +348,8 @@ static inline hairlut_quad hairlut_quad_flipped(hairlut_quad a, hairlut_quad s)
 
 static inline hairlut_quad hairlut_quad_by_sign(hairlut_quad a, hairlut_quad negative, hairlut_quad positive)
 {
-    for (int l = 0; l < 4; ++l)
-        a.lane[l] = signbit(a.lane[l]) ? negative.lane[l] : positive.lane[l];
+    for (int l = 0; l < 4; ++l) /* signbit ends gcc 12 in an internal error */
+        a.lane[l] = copysignf(1.0f, a.lane[l]) < 0.0f ? negative.lane[l] : positive.lane[l];
     return a;
 }
 

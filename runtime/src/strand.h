@@ -69,6 +69,7 @@ typedef struct hairlut_strands {
     const hairlut_four *fours;
     int four_count; /* lobes / 4, rounded up */
     int turns_vary; /* whether turns depend on parameters */
+    int pairs;      /* whether no table has more than one axis: two corners do, of which one without axes has the weight 0 */
 } hairlut_strands;
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A table at a strand: axis.h, of rows and cells that are blended over the corners of the parameters first.
  *
- * The functions of a search are compiled once for each number of corners that is common: then no loop over them is left. */
+ * A function whose last argument is n reads n corners. */
 #ifndef HAIRLUT_STRAND_AXIS_H
 #define HAIRLUT_STRAND_AXIS_H
 
@@ -53,15 +53,26 @@ HAIRLUT_INLINE unsigned hairlut_strand_count(const hairlut_blended *table, const
     return count;
 }
 
-/* hairlut_axis_search_small; of at most five blocks, four texels are the ends of all but the last. */
-HAIRLUT_INLINE unsigned hairlut_strand_search_small(const hairlut_blended *table, const float *groups, hairlut_quad t,
-                                                    hairlut_quad x, int n)
+/* A search of an angle, in steps, so that those of several tables run side by side: their loads overlap. */
+typedef struct hairlut_strand_search {
+    hairlut_blended table;
+    const hairlut_row *row;
+    const float *groups; /* of the row, in the first corner's arrays */
+    float x, given;
+    unsigned cell; /* as far as it is known, counted from the low end */
+    hairlut_found *found;
+} hairlut_strand_search;
+
+/* The block of cells. Of at most five small ones, four texels are the ends of all but the last. */
+HAIRLUT_INLINE unsigned hairlut_strand_block(const hairlut_strand_search *s, int n)
 {
-    const size_t block = table->axis->columns <= 5 * HAIRLUT_SMALL_GROUP + 1
-                             ? hairlut_quad_count(hairlut_strand_texels(table, groups, t, 1, n), x)
-                             : hairlut_strand_count(table, groups, t, x, HAIRLUT_SMALL_GROUP, n);
-    return (unsigned)block * HAIRLUT_SMALL_GROUP +
-           hairlut_strand_count(table, groups + HAIRLUT_LINE + HAIRLUT_LINE * block, t, x, HAIRLUT_SMALL_GROUP, n);
+    const hairlut_axis *axis = s->table.axis;
+    const hairlut_quad t = s->row->t, x = hairlut_quad_all(s->x);
+    if (axis->columns <= 5 * HAIRLUT_SMALL_GROUP + 1)
+        return HAIRLUT_SMALL_GROUP * hairlut_quad_count(hairlut_strand_texels(&s->table, s->groups, t, 1, n), x);
+    if (HAIRLUT_IS_SMALL(axis->columns))
+        return HAIRLUT_SMALL_GROUP * hairlut_strand_count(&s->table, s->groups, t, x, HAIRLUT_SMALL_GROUP, n);
+    return (unsigned)axis->step * hairlut_strand_count(&s->table, s->groups, t, x, HAIRLUT_GROUP, n);
 }
 
 /* hairlut_halve of blended rows; `groups` are those of the first corner. */
@@ -75,14 +86,15 @@ static inline unsigned hairlut_strand_halve(const hairlut_blended *table, const 
     return first;
 }
 
-/* hairlut_axis_search_large */
-HAIRLUT_INLINE unsigned hairlut_strand_search_large(const hairlut_blended *table, const float *groups, hairlut_quad t,
-                                                    hairlut_quad x, int n)
+/* The cell, from its block on. */
+HAIRLUT_INLINE unsigned hairlut_strand_cell_of(const hairlut_strand_search *s, int n)
 {
-    const unsigned first = (unsigned)table->axis->step * hairlut_strand_count(table, groups, t, x, HAIRLUT_GROUP, n);
-    const float *block = groups + HAIRLUT_LINE + first;
-    const unsigned halved = hairlut_strand_halve(table, block, t, hairlut_quad_first(x));
-    return first + halved + hairlut_strand_count(table, block + halved, t, x, HAIRLUT_GROUP, n);
+    const hairlut_quad t = s->row->t, x = hairlut_quad_all(s->x);
+    const float *groups = s->groups + HAIRLUT_LINE;
+    if (HAIRLUT_IS_SMALL(s->table.axis->columns))
+        return s->cell + hairlut_strand_count(&s->table, groups + 2 * (size_t)s->cell, t, x, HAIRLUT_SMALL_GROUP, n);
+    const unsigned first = s->cell + hairlut_strand_halve(&s->table, groups + s->cell, t, s->x);
+    return first + hairlut_strand_count(&s->table, groups + first, t, x, HAIRLUT_GROUP, n);
 }
 
 /* hairlut_axis_blend of blended cells */
@@ -92,27 +104,35 @@ HAIRLUT_INLINE hairlut_quad hairlut_strand_cell(const hairlut_blended *table, co
                             hairlut_quad_mul(row->above, hairlut_blend_quad(table, p + HAIRLUT_CELL, n)));
 }
 
-HAIRLUT_INLINE hairlut_found hairlut_strand_find_of(const hairlut_blended *table, const hairlut_row *row, float given, int n)
+/* hairlut_axis_find from the search on */
+HAIRLUT_INLINE hairlut_found hairlut_strand_read(const hairlut_strand_search *s, int n)
 {
-    const hairlut_axis *axis = table->axis;
-    const float *groups = axis->rows + table->first + (unsigned)row->j * (unsigned)axis->stride;
-    const float x = hairlut_axis_inside(axis, given);
-    const unsigned cell = HAIRLUT_IS_SMALL(axis->columns)
-                              ? hairlut_strand_search_small(table, groups, row->t, hairlut_quad_all(x), n)
-                              : hairlut_strand_search_large(table, groups, row->t, hairlut_quad_all(x), n);
-    const hairlut_link *link = axis->links + cell;
-    const float *p = axis->ends[0] + table->first + (link->offset + HAIRLUT_CELL * (unsigned)row->j);
-    const hairlut_found found = {x, given, link->h, hairlut_strand_cell(table, row, p, n)};
+    const hairlut_axis *axis = s->table.axis;
+    const hairlut_link *link = axis->links + s->cell;
+    const float *p = axis->ends[0] + s->table.first + (link->offset + HAIRLUT_CELL * (unsigned)s->row->j);
+    const hairlut_found found = {s->x, s->given, link->h, hairlut_strand_cell(&s->table, s->row, p, n)};
     return found;
 }
 
-/* hairlut_axis_find */
-HAIRLUT_INLINE hairlut_found hairlut_strand_find(const hairlut_blended *table, const hairlut_row *row, float given)
+HAIRLUT_INLINE void hairlut_strand_begin_search(hairlut_strand_search *s, hairlut_blended table, const hairlut_row *row,
+                                                float given, hairlut_found *found, int n)
 {
-    const int count = table->nodes->count;
-    return count == 2   ? hairlut_strand_find_of(table, row, given, 2)
-           : count == 1 ? hairlut_strand_find_of(table, row, given, 1)
-                        : hairlut_strand_find_of(table, row, given, count);
+    s->table = table;
+    s->row = row;
+    s->groups = table.axis->rows + table.first + (unsigned)row->j * (unsigned)table.axis->stride;
+    s->x = hairlut_axis_inside(table.axis, given);
+    s->given = given;
+    s->found = found;
+    s->cell = hairlut_strand_block(s, n > 0 ? n : table.nodes->count);
+}
+
+/* The rest of all that were begun, to their places. */
+HAIRLUT_INLINE void hairlut_strand_end_searches(hairlut_strand_search *search, int count, int n)
+{
+    for (hairlut_strand_search *s = search; s < search + count; ++s)
+        s->cell = hairlut_strand_cell_of(s, n > 0 ? n : s->table.nodes->count);
+    for (const hairlut_strand_search *s = search; s < search + count; ++s)
+        *s->found = hairlut_strand_read(s, n > 0 ? n : s->table.nodes->count);
 }
 
 /* hairlut_axis_find_place */

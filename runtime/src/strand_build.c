@@ -152,6 +152,7 @@ float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_de
         memcpy(strands->names[p], parameter->name, strlen(parameter->name));
     }
     hairlut_add_grid(strands, NULL, 0, &memory); /* number 0 */
+    strands->pairs = 1;
     return memory;
 }
 

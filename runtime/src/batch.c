@@ -40,22 +40,31 @@ void hairlut_pdf_hair_n(const hairlut_model *model, size_t n, const float *share
     hairlut_batch_widest()->pdf_hair(model, n, shares, theta_r, phi_r, offset, theta_i, phi_i, pdf_angle);
 }
 
-/* The kernels take lobes that there are. */
-static const hairlut_batch *kernels_for(const hairlut_model *model, int lobe)
+/* The kernels take lobes that there are; of another, densities and angles are 0. */
+static int has_lobe(const hairlut_model *model, int lobe)
 {
-    return lobe >= 0 && lobe < model->lobe_count ? hairlut_batch_widest() : &hairlut_batch_portable;
+    return lobe >= 0 && lobe < model->lobe_count;
 }
 
 void hairlut_sample_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                            const float *u_theta, const float *u_phi, hairlut_samples out)
 {
-    kernels_for(model, lobe)->sample_lobe(model, lobe, n, theta_r, phi_r, u_theta, u_phi, out);
+    static const hairlut_sample none;
+    if (has_lobe(model, lobe))
+        hairlut_batch_widest()->sample_lobe(model, lobe, n, theta_r, phi_r, u_theta, u_phi, out);
+    else
+        for (size_t i = 0; i < n; ++i)
+            hairlut_put(out, i, none);
 }
 
 void hairlut_pdf_lobe_n(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                         const float *theta_i, const float *phi_i, float *pdf_angle)
 {
-    kernels_for(model, lobe)->pdf_lobe(model, lobe, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
+    if (has_lobe(model, lobe))
+        hairlut_batch_widest()->pdf_lobe(model, lobe, n, theta_r, phi_r, theta_i, phi_i, pdf_angle);
+    else
+        for (size_t i = 0; i < n; ++i)
+            pdf_angle[i] = 0.0f;
 }
 
 void hairlut_sample_direct_n(const hairlut_model *model, size_t n, const float *theta_r, const float *phi_r,

@@ -34,7 +34,7 @@ UNREACHED = [
     ("model.c", "SIZE_MAX / 4", "a size_t has 64 bits here: no model is larger"),
     ("strand_axis.h", "for (int c = 1; c < n; ++c)", CONSTANT),
     ("strand_axis.h", "small ? to : hairlut_quad_sub(to, from)", CONSTANT),
-    ("strand_axis.h", "hairlut_strand_count(&search->table", CONSTANT),
+    ("strand_axis.h", "hairlut_strand_count(&s->table", CONSTANT),
     ("strand_build.c", "INT32_MIN", "no float lies so near to an odd multiple of pi"),
     ("table.c", "blend_floats(memory, ", "no table is empty"),
     ("exr_compression.c", "offset > LONG_MAX", "a long has 64 bits here: no offset is beyond it"),

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Named parameters of a hair, and the axes of nodes over which tables and mixtures depend on them.
 
-Between an axis' nodes the place is linear in the parameter, which is clamped to the first and the last node.
-What a table or a mixture has at its nodes is blended multilinearly: over the 2^d corners of the cell of nodes
-in which the d parameters lie, each with the product of its axes' parts. The first axis is the slowest in the
-order of nodes.
+A strand's values lie in a cell between nodes: on each of d axes between two neighbours, linearly in the
+parameter, which is clamped to the first and the last node. What a table or a mixture has at the 2^d corners
+of the cell is blended, each corner with the product of its axes' parts. In the order of nodes the first axis
+is the slowest.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from .model import BakedLobe, BakedModel
 from .parameter import number
 from .table import Table
 
-RISE = np.float32(2e-12)  # rad; a reader wants half of it from texel to texel
+RISE = np.float32(2e-12)  # rad from texel to texel; readers refuse less than half of it
 
 
 def parse_values(texts: Sequence[str]) -> dict[str, float]:

@@ -3,8 +3,8 @@
 
 The angles and slopes of two neighbouring rows are blended linearly in theta_r, and between two blended knots
 lies a cell (cell.py). The blend of two quantile functions is again one, with these values and slopes at the
-knots. Where a table depends on parameters of the hair, so many rows are blended for each node around their
-values (axes.py). `parameters` has a value for each of the table's axes, and may have more.
+knots. Where a table depends on parameters of the hair, the rows of the 2^d nodes around their values are
+blended likewise (axes.py); `parameters` has a value for each of the table's axes, and may have more.
 """
 
 from __future__ import annotations

@@ -97,7 +97,8 @@ class Model:
         u               (..., 3) numbers in [0, 1): for the lobe, theta_i and the azimuth
         offset          where the fibre is hit, in [-1, 1]; 0 where there is none
         shares          (..., K) one number a lobe, in any unit; None: the model's own
-        parameters      of the strand, by name: clamped to their ranges; a standard value where there is none
+        parameters      those of the strand, by name, clamped to their ranges; a missing one has its standard
+                        value
 
         >>> import hairlut
         >>> hair = hairlut.builtin("fitted")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A table: a lobe's inverse CDF at the knots of a warp, for a row of viewer inclinations, and that for each
-node of the parameters on which it depends."""
+"""A table: a lobe's inverse CDF at the knots of a warp, a row for each inclination of the viewer. Where it
+depends on parameters of the hair, it has such rows for each node of theirs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -23,12 +23,12 @@ MIN_WIDTH, MIN_HEIGHT, MAX_SIDE = 4, 2, 4096
 class Table:
     """A table and all that its file's header says of it.
 
-    texels      (rows, width) float32, rad, strictly increasing along each row; a row for each theta_r, and
-                that for each node of the axes, the first axis slowest: rows = nodes * height
+    texels      (rows, width) float32, rad, strictly increasing along each row; `height` rows of theta_r
+                for each node of the axes, the first axis slowest: rows = nodes * height
     slopes      (rows, width) float32, dx/du at each texel, rad per unit of u, positive
     log_mass    (rows,) logarithm of the lobe's mass inside its domain, by which each row was normalised
     parameters  Lobe.formula; the other fields as in Lobe
-    axes        nodes of each of the hair's parameters on which the table depends
+    axes        an axis of nodes for each of the hair's parameters on which the table depends
     """
 
     model: str

@@ -131,12 +131,12 @@ def reason(error: BaseException) -> str:
 def _without_streams() -> Iterator[None]:
     """No standard input, and prints on standard error."""
     kept, sys.stdin = sys.stdin, _NoInput()
-    ask, builtins.input = builtins.input, _no_input
+    prompt, builtins.input = builtins.input, _no_input
     try:
         with redirect_stdout(sys.stderr):
             yield
     finally:
-        sys.stdin, builtins.input = kept, ask
+        sys.stdin, builtins.input = kept, prompt
 
 
 @contextmanager
@@ -146,7 +146,7 @@ def _put_back() -> Iterator[None]:
 
 
 def _no_input(prompt: object = "") -> NoReturn:
-    """input() without its prompt: nobody is asked."""
+    """In place of input(): refuses before a prompt is shown."""
     raise HairlutError("reads standard input: give the file what it needs in another file")
 
 

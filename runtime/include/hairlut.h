@@ -13,8 +13,9 @@
  * by which the lobe is turned around the fibre, over theta_r and the offset at which the fibre is hit.
  *
  * A model may depend on up to 8 named parameters of the hair, such as its roughness and its absorption: then it is one model for
- * strands that all differ, and each call passes the parameters of its strand (hairlut_sample_strand, hairlut_pdf_strand). For
- * fixed parameters it is a model like any other. Every function without a `parameters` argument reads it at its standard values.
+ * all strands, the fibres of a groom, however they differ. Each call passes the parameters of its strand (hairlut_sample_strand,
+ * hairlut_pdf_strand). For fixed parameters it is a model like any other. Every function without a `parameters` argument reads it at
+ * its standard values.
  *
  * Angles are in radians. theta is the inclination from the plane normal to the fibre, in [-pi/2, pi/2]; phi is the
  * azimuth around the fibre. (theta_r, phi_r) is the known viewer direction, (theta_i, phi_i) the sampled incident one.
@@ -99,13 +100,12 @@ typedef enum hairlut_azimuth {
  * version can add fields at their ends without breaking a binary. The sizes of 2.0 are known: such descriptors have no parameters
  * and no axes. A size that this version does not know is refused. */
 
-/* A parameter of the hair on which tables and the mixture may depend. */
+/* A parameter of the hair on which tables and the mixture may depend. Its name is [a-z][a-z0-9_]*, at most 31 characters, and none
+ * of theta_r, theta_i, phi, phi_r, phi_i, offset, u, shares and lobe. */
 typedef struct hairlut_parameter {
-    size_t size; /* sizeof(hairlut_parameter) */
-    const char
-        *name;   /* [a-z][a-z0-9_]*, at most 31 characters, no other parameter's; not theta_r, theta_i, phi, phi_r, phi_i,
-                         offset, u, shares or lobe */
-    float least; /* values are clamped to least .. most: increasing, by 1e-30 or more, within [-1e30, 1e30] */
+    size_t size;      /* sizeof(hairlut_parameter) */
+    const char *name; /* no other parameter's */
+    float least;      /* values are clamped to least .. most, which are 1e-30 or more apart, within [-1e30, 1e30] */
     float most;
     float standard; /* from least to most: the value where a caller gives none */
 } hairlut_parameter;
@@ -114,7 +114,7 @@ typedef struct hairlut_parameter {
  * blended linearly in the parameter, over several axes multilinearly. */
 typedef struct hairlut_parameter_nodes {
     size_t size;         /* sizeof(hairlut_parameter_nodes) */
-    int parameter;       /* its number in the model; no other axis' of the same table */
+    int parameter;       /* its number in the model; each at most once in a table or mixture */
     int count;           /* 2 to 64 */
     const float *values; /* increasing, by 1e-30 or more, from the parameter's least to its most, both exactly */
 } hairlut_parameter_nodes;
@@ -216,7 +216,7 @@ typedef enum hairlut_angle { HAIRLUT_THETA = 0, HAIRLUT_PHI = 1 } hairlut_angle;
 /* Columns and rows of one of a lobe's tables, for one node of its axes; 0 and 0 where there is none. */
 HAIRLUT_API void hairlut_table_size(const hairlut_model *model, int lobe, hairlut_angle angle, int *width, int *height);
 
-/* The parameters of the hair on which the model depends; 0 for most models. */
+/* How many parameters of the hair the model depends on; 0 for compiled-in models. */
 HAIRLUT_API int hairlut_parameter_count(const hairlut_model *model);
 
 /* The name of parameter 0 to count - 1, as long as the model lives; NULL for any other number. */

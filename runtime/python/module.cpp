@@ -244,7 +244,7 @@ std::vector<hairlut_parameter_nodes> described(const std::vector<AxisData> &axes
     return nodes;
 }
 
-// How often the rows of theta_r stand below each other
+// How many nodes the axes have together: so many blocks of rows
 std::size_t blocks(const std::vector<AxisData> &axes)
 {
     std::size_t count = 1;

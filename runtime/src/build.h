@@ -12,7 +12,7 @@ static inline int hairlut_within(float low, float high, float bound_low, float b
     return low >= bound_low && low < high && high <= bound_high;
 }
 
-/* A value of a parameter, and a gap between two nodes of it: 1 / gap is a float. */
+/* The largest size of a parameter's value, and the least gap between two nodes: 1 / gap is a float. */
 static const float hairlut_largest_value = 1e30f, hairlut_narrowest_gap = 1e-30f;
 
 /* Descriptors as 2.0 had them, for their sizes: without parameters and axes. */

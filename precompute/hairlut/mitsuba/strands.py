@@ -22,7 +22,7 @@ import numpy as np
 from ..errors import HairlutError
 from .arrays import Records
 
-JOINED = {"bsplinecurve": 3, "linearcurve": 1}  # control points less segments of a strand
+JOINED = {"bsplinecurve": 3, "linearcurve": 1}  # control points of a strand, less its segments
 
 
 def texture_class() -> type:
@@ -46,9 +46,8 @@ def texture_class() -> type:
             self.values = Records(np.repeat(values, segments)[:, None])
 
         def eval_1(self, si, active=True):
-            return self.values[dr.minimum(si.prim_index, self.last)][
-                0
-            ]  # where nothing was hit it is any number
+            segment = dr.minimum(si.prim_index, self.last)  # where nothing was hit it is any number
+            return self.values[segment][0]
 
         def eval(self, si, active=True):
             return mi.UnpolarizedSpectrum(self.eval_1(si, active))

@@ -30,8 +30,8 @@ class Mixture:
 
     lobes     names, in order
     theta_r   (J,) rad, increasing; offset (N,) in [-1, 1], increasing; one node where nothing depends on it
-    share     (K, ..., J, N) >= 0, in any unit, normalised at each node when they are read; ... has a dimension
-              for each of the axes
+    share     (K, ..., J, N) >= 0, in any unit, normalised at each node when they are read; ... has a
+              dimension for each of the axes
     turn      (K, ..., J, N) rad, added to the azimuth that the lobe's table gives
     mirrored  whether the offsets are >= 0 and -h mirrors h: turned and relative azimuth negated
     axes      an axis of nodes for each of the hair's parameters on which shares or turns depend

@@ -35,6 +35,8 @@ PAGES = {
     ),
     "make fits": (
         ("Fitted hairs", "fit.md", "42 hairs as functions, fitted, beside the samplers of their authors"),
+        ("Largest weights", "fit_weights.md", "what weights lobes can reach at all, and what fits reach"),
+        ("One model for every strand", "parameters.md", "size against samples, at random parameters"),
     ),
 }
 """By the command that makes them: title, file, what the page shows."""

@@ -110,6 +110,17 @@ def test_brown_is_as_good_as_the_readme_says():
         assert f"{errors[name]:.{len(text.partition('.')[2])}f}" == text, name
 
 
+def test_the_model_over_parameters_is_as_good_as_the_readme_says():
+    page = (ROOT / "tests" / "report" / "pages" / "parameters.md").read_text()
+    (row,) = re.findall(r"^\| 0\.01 \| (\d+) \| \d+ \| (\S+) \| \S+ \| (\S+) \| (\S+) \|", page, re.MULTILINE)
+    size, *samples = re.search(
+        r"one model of (\d+) KB.* \| (\S+) times the samples of the authors' sampler in the median, "
+        r"(\S+) at the 99th percentile, (\S+) at worst",
+        README,
+    ).groups()
+    assert [size, *samples] == [row[0], *(f"{float(number):.3f}" for number in row[1:])]
+
+
 def test_the_rendered_strands_are_as_good_as_the_readme_says():
     page = (ROOT / "tests" / "report" / "pages" / "strands.md").read_text()
     (count,) = re.findall(r"^of the (\d+) strands has", page, re.MULTILINE)

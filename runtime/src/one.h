@@ -85,6 +85,7 @@ HAIRLUT_INLINE float with_one(const hairlut_model *model, const hairlut_mix *mix
     found[3] = found[1];
     return pdf + mix->weight[a] * hairlut_quad_first(hairlut_densities(found));
 }
+
 /* Likewise of lobes a and b, at once. */
 static float with_two(const hairlut_model *model, const hairlut_mix *mix, const direction *d, const grid_row *at, int a,
                       int b, float pdf)

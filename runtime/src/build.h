@@ -79,14 +79,14 @@ void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *table, float *m
 void hairlut_blend_axis(const hairlut_axis *axis, float *memory, const hairlut_spacing *nodes,
                         const hairlut_corners *corners);
 
-/* What the strands of a model choose from: its descriptors are valid, and known ones. */
+/* Lays out what strands read, from descriptors that are valid and of a known size. */
 size_t hairlut_strands_floats(const hairlut_model_desc *desc);
 float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_desc *desc, float *memory);
 
 /* The number of the grid of these axes, new or one that there is. Its scales go to *memory, which moves to their end. */
 int hairlut_add_grid(hairlut_strands *strands, const hairlut_parameter_nodes *axes, int axis_count, float **memory);
 
-/* How what stands at the nodes of a grid is spaced, from its pitch. */
+/* How copies for the nodes of a grid are spaced, from their pitch. */
 hairlut_spacing hairlut_space(const hairlut_strands *strands, int number, ptrdiff_t pitch);
 
 /* The corners of a grid without axes, and of one around the standard values. */

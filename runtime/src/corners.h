@@ -17,7 +17,7 @@ HAIRLUT_INLINE hairlut_node hairlut_scale_place(const hairlut_scale *scale, floa
     return place;
 }
 
-/* The cell of nodes of a grid around places on its scales; `axes` is how many it has. */
+/* The corners around a strand, from its places on the scales; `axes` is how many the grid has. */
 HAIRLUT_INLINE void hairlut_corners_of(const hairlut_node_grid *grid, const hairlut_node *places, int axes,
                                        hairlut_corners *corners)
 {

@@ -203,7 +203,7 @@ static size_t tables_of(const hairlut_table *table)
     return table->axis_count > 0 ? hairlut_node_count(table->axes, table->axis_count) + 1 : 1;
 }
 
-/* One block: the struct, its strands, its lobes, the mixture, what the strands choose from, then the tables from the next cache
+/* One block: the struct, its strands, its lobes, the mixture, the nodes of parameters, then the tables from the next cache
  * line on. In double, as a size_t of 32 bits may not have room for the nodes of many tables. */
 static double bytes_of(const hairlut_model_desc *desc, const table_list *list)
 {

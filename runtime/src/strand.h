@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A model over parameters: what those of a strand choose from, and the choice.
+/* A model over parameters, and a strand: a set of values of them.
  *
- * The model itself is that of the standard values. What depends on parameters is stored at the nodes of its axes besides, and
- * a strand reads the blend of the 2^d nodes around it, the corners. */
+ * The model itself is that of the standard values. Tables and mixtures that depend on parameters are stored for each node of their
+ * axes besides, and a strand reads the blend of the 2^d nodes around its values, the corners. */
 #ifndef HAIRLUT_STRAND_H
 #define HAIRLUT_STRAND_H
 
@@ -22,13 +22,14 @@ enum {
 typedef struct hairlut_scale {
     int parameter;
     int count;
-    int quads;          /* of the inner nodes, which infinity fills up */
+    int quads;          /* fours of inner nodes; the last is filled up with infinity */
     const float *inner; /* all but the first and the last, by which a value is searched */
     const float *nodes; /* for each, its value and 1 / (the next one's - its own); 0 at the last */
 } hairlut_scale;
 
-/* The axes of a table or of the mixture: the numbers of their scales, and nodes from one of an axis to the next; the fastest axis
- * first. Of the 2^axis_count corners of a cell of nodes, number c is at the upper node of axis a where bit a of c is set. */
+/* The axes of a table or of the mixture, the fastest first: the number of each one's scale, and how many nodes of the grid lie from
+ * one of its nodes to the next. Of the 2^axis_count corners of a cell of nodes, number c is at the upper node of axis a where bit a
+ * of c is set. */
 typedef struct hairlut_node_grid {
     int axis_count;
     int scale[HAIRLUT_MAX_AXES], stride[HAIRLUT_MAX_AXES];
@@ -40,7 +41,7 @@ typedef struct hairlut_corners {
     hairlut_quad weight[HAIRLUT_CORNERS];
 } hairlut_corners;
 
-/* What stands at the nodes of a grid, in units of its own: from one node to the next, and from the first corner to each. */
+/* How the copies for the nodes of a grid are spaced in memory: from one node to the next, and from the first corner to each. */
 typedef struct hairlut_spacing {
     int grid;
     int count; /* corners */
@@ -60,7 +61,7 @@ typedef struct hairlut_strands {
     float least[HAIRLUT_MAX_PARAMETERS], most[HAIRLUT_MAX_PARAMETERS], standard[HAIRLUT_MAX_PARAMETERS];
     char names[HAIRLUT_MAX_PARAMETERS][HAIRLUT_NAME_SIZE];
     hairlut_scale scales[HAIRLUT_MOST_SCALES];
-    hairlut_node_grid grids[HAIRLUT_MOST_GRIDS]; /* number 0 is that without axes */
+    hairlut_node_grid grids[HAIRLUT_MOST_GRIDS]; /* number 0 has no axes */
     /* Of tables, in floats. That of node p stands as the lobe's hairlut_axis does, (p + 1) * pitch behind it; without axes the
      * pitch is 0, and the only node is that axis itself. */
     hairlut_spacing theta[HAIRLUT_MAX_LOBES], phi[HAIRLUT_MAX_LOBES];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What the strands of a model choose from, as strand.h lays it out. */
+/* Lays out a model's parameters, nodes and mixtures as strand.h describes them. */
 #include <math.h>
 #include <string.h>
 

@@ -38,6 +38,8 @@ HEAVIEST = 10.0  # a weight that is a firefly
 FITTED_OFFSETS = 13  # offsets by which shapes are fitted; shares and turns are at all
 LIMITS = {"theta_r": 145, "offset": 65, "theta_i": 128, "phi": 512}
 FARTHEST = 0.5  # rad by which a turn is expected to go on from row to row
+GRAZING, UNSEEN = 0.1, 0.1
+"""Below this cosine of theta_r a fibre is hardly seen: tables may lose more, up to this part's inverse."""
 TABLE_PART = 0.15  # of the tolerance that each table may lose
 SHARE_OF_AXIS = 0.2  # of the tolerance above which an axis is refined
 WEIGHT_PARTS = 5.0  # what a weight that is too large counts, or a viewer whose V is
@@ -281,11 +283,12 @@ def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -
     """The textures of the rows, each table losing at most `loss` of V."""
     lobes = []
     around = np.tile(np.linspace(0, TWO_PI, rows[0].phi.shape[1] + 1), (len(rows), 1))
+    seen = np.clip(np.cos(data.theta_r) / GRAZING, UNSEEN, 1.0)
     share = np.stack([row.share for row in rows]).transpose(2, 0, 1)
     turn = wrap(np.stack([row.turn for row in rows]).transpose(2, 0, 1))
     bright = bright_parts(data.theta_edges, rows)
     for k in range(len(share)):
-        lobe, need = f"lobe{k}", tables.Need(share[k].mean(axis=1), bright[k], loss)
+        lobe, need = f"lobe{k}", tables.Need(seen * share[k].mean(axis=1), bright[k], loss)
         inclinations, azimuths = (
             np.stack(part) for part in zip(*((r.theta[:, k], r.phi[k]) for r in rows), strict=True)
         )

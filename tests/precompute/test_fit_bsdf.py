@@ -86,16 +86,16 @@ def function(path):
 
 def test_a_near_field_hair_keeps_its_promise_between_nodes(tmp_path, capsys):
     path = fitted(tmp_path, NEAR)
-    model, told, err = run(path, tmp_path / "out", capsys)
-    assert told["lobes"] == 2
-    assert told["relative_variance"] < 0.01
-    assert told["largest_weight"] < 10
+    model, reported, err = run(path, tmp_path / "out", capsys)
+    assert reported["lobes"] == 2
+    assert reported["relative_variance"] < 0.01
+    assert reported["largest_weight"] < 10
     assert model.mixture.mirrored
     bsdf = function(path)
     found = [quadrature(model, bsdf, t, h) for t in (-0.93, 0.111, 0.62) for h in (0.13, -0.47, 0.81)]
     variance, weight = np.mean([v for v, _ in found]), max(w for _, w in found)
-    assert variance == pytest.approx(told["relative_variance"], rel=0.25, abs=0.003)
-    assert weight < 1.5 * told["largest_weight"]
+    assert variance == pytest.approx(reported["relative_variance"], rel=0.25, abs=0.003)
+    assert weight < 1.5 * reported["largest_weight"]
     assert "warning" not in err
 
 
@@ -105,9 +105,9 @@ def test_a_slow_function_is_fitted_within_its_budget(tmp_path, capsys):
         "    return", "    time.sleep(2e-6 * np.size(narrow + broad))\n    return"
     )
     start = perf_counter()
-    model, told, _ = run(fitted(tmp_path, slow), tmp_path / "out", capsys, "--budget", "6")
+    model, reported, _ = run(fitted(tmp_path, slow), tmp_path / "out", capsys, "--budget", "6")
     assert perf_counter() - start < 1.5 * 6 + 6
-    assert told["relative_variance"] < 0.05
+    assert reported["relative_variance"] < 0.05
     assert quadrature(model, function(fitted(tmp_path, NEAR)), 0.111, 0.3)[0] < 0.05
 
 
@@ -153,8 +153,8 @@ def test_losses_are_measured_between_all_offsets(monkeypatch):
 
 def test_a_far_field_hair_takes_several_lobes_without_turns(tmp_path, capsys):
     path = fitted(tmp_path, FAR)
-    model, told, _ = run(path, tmp_path / "out", capsys)
-    assert told["lobes"] == 2
+    model, reported, _ = run(path, tmp_path / "out", capsys)
+    assert reported["lobes"] == 2
     assert not model.mixture.turn.any()
     assert len(model.mixture.offset) == 1
     for theta_r in (-1.2, 0.04, 0.7):
@@ -167,20 +167,20 @@ def test_a_function_that_selects_elements_gets_full_arrays(tmp_path, capsys):
     text = FAR.replace(
         "    return (", "    back = phi > np.pi\n    theta_i[back] = theta_i[back]\n    return ("
     )
-    _, told, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys, "--lobes", "2")
-    assert told["relative_variance"] < 0.01
+    _, reported, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys, "--lobes", "2")
+    assert reported["relative_variance"] < 0.01
 
 
 def test_the_number_of_lobes_can_be_fixed(tmp_path, capsys):
-    model, told, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys, "--lobes", "1")
-    assert told["lobes"] == len(model.lobes) == 1
-    assert told["relative_variance"] > 0.2
+    model, reported, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys, "--lobes", "1")
+    assert reported["lobes"] == len(model.lobes) == 1
+    assert reported["relative_variance"] > 0.2
 
 
 def test_nothing_turns_where_only_shares_depend_on_the_offset(tmp_path, capsys):
     text = NEAR.replace(" + 0.7 * gamma", "").replace(" + 2 * gamma", "")
-    model, told, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys)
-    assert told["relative_variance"] < 0.01
+    model, reported, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys)
+    assert reported["relative_variance"] < 0.01
     assert not model.mixture.turn.any()
     assert np.ptp(model.mixture.share[0, 18]) > 0.2
 
@@ -189,15 +189,17 @@ def test_a_uniform_azimuth_takes_no_table(tmp_path, capsys):
     text = NEAR[: NEAR.index("def bsdf")] + (
         "def bsdf(theta_r, theta_i, phi):\n    return highlight(theta_r, theta_i, 0.0, 0.3, phi, 0.0)\n"
     )
-    model, told, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys)
-    assert told["relative_variance"] < 0.01
+    model, reported, _ = run(fitted(tmp_path, text), tmp_path / "out", capsys)
+    assert reported["relative_variance"] < 0.01
     assert [lobe.phi for lobe in model.lobes] == [None]
 
 
 def test_the_promise_is_in_the_header(tmp_path, capsys):
-    model, told, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys)
-    assert model.errors["mixture"]["relative_variance"] == pytest.approx(told["relative_variance"], rel=1e-3)
-    assert model.errors["mixture"]["largest_weight"] == pytest.approx(told["largest_weight"], rel=1e-3)
+    model, reported, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys)
+    assert model.errors["mixture"]["relative_variance"] == pytest.approx(
+        reported["relative_variance"], rel=1e-3
+    )
+    assert model.errors["mixture"]["largest_weight"] == pytest.approx(reported["largest_weight"], rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -170,9 +170,9 @@ def test_numbers_on_the_page_are_those_of_c(page, state):
         assert shown["more"]["inverted"][0] == pytest.approx(u_theta, abs=1e-5)
     share, turn, side = model.mixture.at(np.radians(theta_r), offset)
     assert shown["shares"] == pytest.approx(share.tolist(), abs=1e-4)
-    for told, angle, baked in zip(shown["turns"], side * turn, model.lobes, strict=True):
+    for reported, angle, baked in zip(shown["turns"], side * turn, model.lobes, strict=True):
         if baked.phi:
-            assert np.cos(np.radians(told) - angle) == pytest.approx(1, abs=1e-6)
+            assert np.cos(np.radians(reported) - angle) == pytest.approx(1, abs=1e-6)
 
 
 AT = {"beta_m": 0.41, "beta_n": 0.15, "absorption": 9.5, "tilt": -0.07, "unused": 1e20, "weight": -1.3}

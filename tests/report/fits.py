@@ -44,12 +44,12 @@ def measured(subject: Subject) -> dict:
         size = sum(path.stat().st_size for path in paths)
         model = hairlut.load(folder)
         kept = quadrature(subject, lambda *at: model.pdf(at[0], 0.0, at[1], at[2], offset=at[3]))
-    told = summary.promise(found)
+    promised = summary.promise(found)
     row = {
-        "promise": told.relative_variance,
-        "promise_low": told.low,
-        "promise_high": told.high,
-        "promise_weight": told.largest_weight,
+        "promise": promised.relative_variance,
+        "promise_low": promised.low,
+        "promise_high": promised.high,
+        "promise_weight": promised.largest_weight,
         "lobes": len(found.model.lobes),
         "seconds": seconds,
         "bytes": size,

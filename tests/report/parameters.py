@@ -44,7 +44,7 @@ def fitted(tolerance: float, given: box.Box) -> dict:
     with tempfile.TemporaryDirectory() as folder:
         paths = exr.write_model(Path(folder), boxsummary.with_errors(found))
         seconds = process_time() - start
-        told = boxsummary.data(found, tolerance)
+        reported = boxsummary.data(found, tolerance)
         model = hairlut.load(folder)
 
         def drawn(place, theta_r, theta_i, phi, offset):
@@ -56,10 +56,10 @@ def fitted(tolerance: float, given: box.Box) -> dict:
             "seconds": seconds,
             "bytes": sum(path.stat().st_size for path in paths),
             "texels": sum(table.nbytes for table in found.model.tables) + 8 * found.model.mixture.share.size,
-            "lobes": told["lobes"],
-            "axes": {name: {a: len(n) for a, n in axes.items()} for name, axes in told["axes"].items()},
-            "limits": told["limits"],
-            "promise": [told["relative_variance"], told["low"], told["high"]],
+            "lobes": reported["lobes"],
+            "axes": {name: {a: len(n) for a, n in axes.items()} for name, axes in reported["axes"].items()},
+            "limits": reported["limits"],
+            "promise": [reported["relative_variance"], reported["low"], reported["high"]],
             **kept,
         }
         ways = two_ways(given, exr.read_model(Path(folder)))

@@ -40,11 +40,11 @@ def p_value(hair, place, sample):
     expected = (DRAWS * mass / mass.sum()).ravel()
     kept = expected > 8
     found = np.append(count.ravel()[kept], count.ravel()[~kept].sum())
-    told = np.append(expected[kept], max(expected[~kept].sum(), 1e-9))
+    merged = np.append(expected[kept], max(expected[~kept].sum(), 1e-9))
     return (
-        stats.chisquare(found, told).pvalue
-        if told[-1] > 1
-        else stats.chisquare(found[:-1], told[:-1] * found[:-1].sum() / told[:-1].sum()).pvalue
+        stats.chisquare(found, merged).pvalue
+        if merged[-1] > 1
+        else stats.chisquare(found[:-1], merged[:-1] * found[:-1].sum() / merged[:-1].sum()).pvalue
     )
 
 

@@ -156,7 +156,8 @@ def test_places_together_tell_lobes_apart_that_one_alone_does_not():
 
     given = box.of_parameters(density, (Parameter("mix", 0.1, 0.9, 0.5),), False)
     places = ((0.5,), (0.15,), (0.85,))
-    first = shapes.at_anchor(given, places[0], 2, False, 13, lambda share: None)
+    anchor = shapes.Anchor(places[0], places[0], 2)
+    first = shapes.at_anchor(given, anchor, False, 13, lambda share: None)
     apart = shapes.joined(given, first, places, first.rows * 3, shapes.BOTH)
     assert apart.variance() < 0.003
     row = apart.rows[6]

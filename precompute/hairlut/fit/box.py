@@ -35,6 +35,10 @@ class Box:
     def standard(self) -> Place:
         return tuple(p.standard for p in self.parameters)
 
+    @property
+    def middle(self) -> Place:
+        return tuple((p.least + p.most) / 2 for p in self.parameters)
+
     def named(self, place: Place) -> dict[str, float]:
         return {p.name: value for p, value in zip(self.parameters, place, strict=True)}
 

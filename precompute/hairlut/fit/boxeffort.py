@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .cells import GAUSS
+from .cells import AROUND, GAUSS
 from .effort import Pace
 
 FIRST_ROUND = 0.8  # of the budget
@@ -25,7 +25,7 @@ class BoxEffort:
     """rows: of theta_r; offset: of the mixture; fitted_offsets: by which shapes are fitted; theta_i: cells;
     most_phi: cells of the azimuth, at most; steps: values of a parameter along which lobes are followed;
     sweeps: of a block's lobes; corners: of the box that are looked at; places: that are measured; nodes: of
-    the mixture, all its parameters together."""
+    the mixture, all its parameters together; edge_azimuths: by which cells of theta_i are chosen."""
 
     rows: int = 49
     offset: int = 25
@@ -36,15 +36,16 @@ class BoxEffort:
     sweeps: int = 24
     corners: int = 8
     places: int = 384
-    nodes: int = 512
+    nodes: int = 128
+    edge_azimuths: int = AROUND
 
 
 FULL = BoxEffort()
 EFFORTS = (
     FULL,
-    BoxEffort(25, 13, 9, 24, 192, 9, 16, 8, 192, 96),
-    BoxEffort(13, 9, 7, 24, 96, 5, 12, 4, 96, 32),
-    BoxEffort(13, 7, 5, 16, 64, 5, 8, 2, 48, 12),
+    BoxEffort(25, 13, 9, 24, 192, 9, 16, 8, 192, 64, AROUND // 2),
+    BoxEffort(13, 9, 7, 24, 96, 5, 12, 4, 96, 24, AROUND // 3),
+    BoxEffort(13, 7, 5, 16, 64, 5, 8, 2, 48, 12, AROUND // 4),
 )
 """From full to least."""
 

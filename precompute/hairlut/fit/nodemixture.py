@@ -69,7 +69,7 @@ class Fitting:
         box, offset = self._box, np.sin(self._angle)
         density, named = box.density_at(place), box.named(place)
         some = offset[np.unique([0, len(offset) // 2, max(len(offset) - 2, 0)])]
-        edges = cells.theta_edges(density, self._theta_r, some, box.effort.theta_i)
+        edges = cells.theta_edges(density, self._theta_r, some, box.effort.theta_i, box.effort.edge_azimuths)
         viewers = self._theta_r[np.unique([0, len(self._theta_r) // 2, len(self._theta_r) - 1])]
         m = min(cells.phi_count(density, viewers, offset[:-1][::6]), MOST_PHI, box.effort.most_phi)
         lobes = [BakedLobe(x.name, x.theta.at(named), x.phi and x.phi.at(named)) for x in self._lobes]

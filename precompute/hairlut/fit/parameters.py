@@ -20,12 +20,12 @@ from ..errors import HairlutError
 from ..lobes import HALF_PI, Array
 from ..model import BakedModel
 from . import boxeffort, boxpromise, cells, dependence, effort, nodemixture, nodeshapes, nodetables, shapes
-from .box import Box, Place
+from .box import Box
 from .boxeffort import BoxEffort
 from .boxpromise import Measured
 from .dependence import Dependence
 from .refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS
-from .shapes import Shapes
+from .shapes import Anchor, Shapes
 
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
 LIMITS = {"theta_r": 145, "offset": 65}
@@ -60,19 +60,19 @@ def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float,
     start = perf_counter()
     random = np.random.default_rng(0)
     box = replace(box, effort=_effort(box, budget))
-    place, count = shapes.first_anchor(box, lobes, lambda share: report("choosing lobes", share))
+    anchor = shapes.anchor_of(box, lobes, lambda share: report("choosing lobes", share))
     counts = {"theta_r": box.effort.rows, "offset": box.effort.offset}
-    anchor = _anchor(box, place, count, counts["theta_r"], report)
-    found = _dependence(box, anchor, report)
+    full = _at_anchor(box, anchor, counts["theta_r"], report)
+    found = _dependence(box, full, report)
     allowed = {axis: NODE_PART * tolerance for axis in (*counts, *(p.name for p in box.parameters))}
     best: FittedBox | None = None
     while True:
         began = perf_counter()
         so_far, until = _report(report, best), _until(box, start + budget) if best else box
         try:
-            if anchor.theta_r.size != counts["theta_r"]:
-                anchor = _anchor(until, place, count, counts["theta_r"], so_far)
-            fitted = _fit_once(until, name, anchor, found, counts, allowed, tolerance, random, so_far)
+            if full.theta_r.size != counts["theta_r"]:
+                full = _at_anchor(until, anchor, counts["theta_r"], so_far)
+            fitted = _fit_once(until, name, full, found, counts, allowed, tolerance, random, so_far)
         except _OutOfTime:
             return best
         if best is None or _score(fitted) < _score(best):
@@ -157,12 +157,10 @@ def _report(report: Report, best: FittedBox | None) -> Report:
     return so_far
 
 
-def _anchor(box: Box, place: Place, count: int, rows: int, report: Report) -> Shapes:
+def _at_anchor(box: Box, anchor: Anchor, rows: int, report: Report) -> Shapes:
     """The lobes at the anchor: with turns where those gain."""
-    if not box.hair.offsets:
-        return shapes.at_anchor(box, place, count, False, rows, lambda share: report("fitting lobes", share))
-    turning = shapes.turns(box, place, count)
-    return shapes.at_anchor(box, place, count, turning, rows, lambda share: report("fitting lobes", share))
+    turning = box.hair.offsets and shapes.turns(box, anchor)
+    return shapes.at_anchor(box, anchor, turning, rows, lambda share: report("fitting lobes", share))
 
 
 def _dependence(box: Box, anchor: Shapes, report: Report) -> Dependence:

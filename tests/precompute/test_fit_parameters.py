@@ -14,7 +14,7 @@ from hairlut.fit import box, nodes, shapes, tied
 HAIR = """
 import numpy as np
 
-PARAMETERS = {"width": (0.1, 0.4), "mix": (0.2, 0.8, 0.6)}
+PARAMETERS = {"width": (0.1, 0.4), "mix": (0.0, 1.0, 0.6)}
 
 def lobe(theta_r, theta_i, shift, sigma, phi, kappa):
     x = (theta_i + theta_r - shift) / sigma
@@ -70,7 +70,7 @@ def test_it_draws_the_hair_off_the_nodes(fitted, bsdf):
     random = np.random.default_rng(1)
     found = []
     for theta_r in random.uniform(-1.3, 1.3, 12):
-        at = random.uniform(0.1, 0.4), random.uniform(0.2, 0.8)
+        at = random.uniform(0.1, 0.4), random.uniform(0.0, 1.0)
         found.append(variance(fitted, bsdf, theta_r, at, at))
     assert np.mean(found) < 0.006
     assert max(found) < 0.015
@@ -156,8 +156,7 @@ def test_places_together_tell_lobes_apart_that_one_alone_does_not():
 
     given = box.of_parameters(density, (Parameter("mix", 0.1, 0.9, 0.5),), False)
     places = ((0.5,), (0.15,), (0.85,))
-    anchor = shapes.Anchor(places[0], places[0], 2)
-    first = shapes.at_anchor(given, anchor, False, 13, lambda share: None)
+    first = shapes.at_anchor(given, places[0], 2, False, 13, lambda share: None)
     apart = shapes.joined(given, first, places, first.rows * 3, shapes.BOTH)
     assert apart.variance() < 0.003
     row = apart.rows[6]
@@ -170,9 +169,9 @@ def test_places_together_tell_lobes_apart_that_one_alone_does_not():
 
 def test_steps_are_equal_factors_over_a_wide_range_and_corners_have_both_ends():
     given = box.Box(None, (Parameter("a", 0.1, 10, 1), *(Parameter(x, 0, 1, 0) for x in "bcde")), None)
-    values = given.steps(0, 5)
+    values = given.steps(0, 5, 0.1)
     assert values[1:] / values[:-1] == pytest.approx(10**0.5)
-    assert given.steps(1, 3) == pytest.approx([0, 0.5, 1])
+    assert given.steps(1, 3, 0.4) == pytest.approx([0, 0.4, 1])
     corners = np.array(given.corners())
     assert len(corners) == given.effort.corners
     assert (corners.min(axis=0) == [0.1, 0, 0, 0, 0]).all()

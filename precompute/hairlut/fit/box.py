@@ -66,14 +66,17 @@ class Box:
             for row in (half, 1 - half)
         ]
 
-    def steps(self, parameter: int, count: int) -> Array:
-        """(count,) values of one parameter from least to most: by equal factors where its range is wide."""
+    def steps(self, parameter: int, count: int, through: float) -> Array:
+        """(count,) values of one parameter from least to most, `through` among them: by equal factors where
+        its range is wide."""
         p = self.parameters[parameter]
         if p.least > 0 and p.most > RATIO * p.least:
             values = np.geomspace(p.least, p.most, count)
         else:
             values = np.linspace(p.least, p.most, count)
         values[[0, -1]] = p.least, p.most
+        if p.least < through < p.most:
+            values[1 + abs(values[1:-1] - through).argmin()] = through
         return values
 
 

@@ -15,10 +15,11 @@ import numpy as np
 
 from . import shapes
 from .box import Box, Place, with_value
+from .nodes import outwards, place_of
 from .shapes import BOTH, NEITHER, PHI, THETA, Shapes
 
-JOINED = 0.4, 0.65, 1.0
-"""Parts of the way along a parameter at which values are fitted together with the first."""
+JOINED = 4  # values of a parameter that are fitted together with the anchor's
+PATIENCE = 4  # times as many sweeps as usual until lobes that one place mixes are told apart by several
 HOPELESS = 2.0  # V of shapes that are kept from the anchor, at which they are no start for that
 SLACK = 0.004  # of V by which shapes that are fixed may lose
 
@@ -50,7 +51,7 @@ def dependence(box: Box, anchor: Shapes, report: Callable[[float], None]) -> Dep
     on_theta, on_phi, along = [], [], {}
     for p in (p for p in range(count) if p not in kept):
         report(0.5 + p / (2 * count))
-        values = _from(box.steps(p, box.effort.steps), places[0][p])
+        values = box.steps(p, box.effort.steps, places[0][p])
         on, found = _least(box, base, p, values)
         on_theta += [p] * on[0]
         on_phi += [p] * on[1]
@@ -58,28 +59,27 @@ def dependence(box: Box, anchor: Shapes, report: Callable[[float], None]) -> Dep
     return Dependence(tuple(on_theta), tuple(on_phi), places, base, along)
 
 
-def _from(values: np.ndarray, start: float) -> np.ndarray:
-    """Values from one end to the other, from the end at which the anchor is."""
-    return values if start == values[0] else values[::-1]
-
-
 def _together(box: Box, base: Shapes, parameter: int) -> Shapes | None:
     """The shapes that more values of a parameter have together, if these lose no more than each alone."""
-    values = _from(box.steps(parameter, box.effort.steps), base.places[0][parameter])
+    start = base.places[0][parameter]
+    values = box.steps(parameter, box.effort.steps, start)
     one = _one_place(base, 0)
     fixed = _followed(box, one, parameter, values, NEITHER, HOPELESS)
-    if len(fixed) < len(values):
+    if fixed is None:
         return None
-    numbers = [round(part * (len(values) - 1)) for part in JOINED]
+    numbers = sorted(set(np.linspace(0, len(values) - 1, JOINED).round().astype(int).tolist()))
+    numbers = [i for i in numbers if i != place_of(values, start)]
     more = [fixed[i] for i in numbers]
     starts = [*base.rows, *(row for there in more for row in there.rows)]
     places = base.places + tuple(there.places[0] for there in more)
     together = shapes.joined(box, one, places, starts, BOTH)
-    free = _followed(box, one, parameter, values, BOTH)
-    for number, i in enumerate(numbers, len(base.places)):
-        if _one_place(together, number).variance() > free[i].variance() + SLACK:
-            return None
-    return together
+    free = _followed(box, one, parameter, values, BOTH) or []
+    for _ in range(PATIENCE):
+        alone = [_one_place(together, len(base.places) + n).variance() for n in range(len(numbers))]
+        if all(v <= free[i].variance() + SLACK for v, i in zip(alone, numbers, strict=True)):
+            return together
+        together = together.improved(box.effort.sweeps, BOTH, base.turning)
+    return None
 
 
 def _one_place(found: Shapes, number: int) -> Shapes:
@@ -94,18 +94,21 @@ def _least(
     box: Box, base: Shapes, parameter: int, values: np.ndarray
 ) -> tuple[tuple[bool, bool], list[Shapes]]:
     """(which of inclinations and azimuths have to move along a parameter, their shapes)"""
-    tried = []
     for moving in (THETA, PHI):
-        tried.append(_followed(box, base, parameter, values, moving, base.variance() + SLACK))
-        if len(tried[-1]) == len(values):
-            return moving, tried[-1]
-    free = _followed(box, base, parameter, values, BOTH)
-    for moving, found in zip((THETA, PHI), tried, strict=True):
-        if all(one.variance() <= other.variance() + SLACK for one, other in zip(found, free, strict=False)):
-            found = _followed(box, base, parameter, values, moving)
-            if all(a.variance() <= b.variance() + SLACK for a, b in zip(found, free, strict=True)):
-                return moving, found
+        found = _followed(box, base, parameter, values, moving, base.variance() + SLACK)
+        if found:
+            return moving, found
+    free = _followed(box, base, parameter, values, BOTH) or []
+    most = max(one.variance() for one in free) + SLACK
+    for moving in (THETA, PHI):
+        found = _followed(box, base, parameter, values, moving, most) or []
+        if found and all(a.variance() <= b.variance() + SLACK for a, b in zip(found, free, strict=True)):
+            return moving, found
     return BOTH, free
+
+
+class _TooFar(Exception):
+    pass
 
 
 def _followed(
@@ -115,12 +118,17 @@ def _followed(
     values: np.ndarray,
     moving: tuple[bool, bool],
     allowed: float = np.inf,
-) -> list[Shapes]:
-    """The shapes at the values of a parameter, until V is larger than allowed."""
-    found = [base]
-    for value in values[1:]:
-        places = tuple(with_value(place, parameter, value) for place in base.places)
-        found.append(shapes.followed(box, found[-1], places, moving))
-        if found[-1].variance() > allowed:
-            break
-    return found
+) -> list[Shapes] | None:
+    """The shapes at the values of a parameter, or None if V is larger than allowed at one of them."""
+
+    def beside(one: Shapes, value: float) -> Shapes:
+        places = tuple(with_value(place, parameter, value) for place in one.places)
+        there = shapes.followed(box, one, places, moving)
+        if there.variance() > allowed:
+            raise _TooFar
+        return there
+
+    try:
+        return outwards(values, base.places[0][parameter], base, beside)
+    except _TooFar:
+        return None

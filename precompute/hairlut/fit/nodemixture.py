@@ -117,12 +117,14 @@ def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tu
     first = fitting.at(anchor, of_shapes(start, theta_r, angle))
     found = []
     for p in range(len(box.parameters)):
-        values = box.steps(p, 5)
-        here = first
-        for value in values if values[0] == anchor[p] else values[::-1]:
-            place = with_value(anchor, p, value)
-            here = fitting.at(place, here)
-            same = fitting.fixed(place, first)
+        values = box.steps(p, 5, anchor[p])
+
+        def beside(one: Lit, value: float, p=p) -> Lit:
+            return fitting.at(with_value(anchor, p, value), one)
+
+        along = nodes.outwards(values, anchor[p], first, beside)
+        for value, here in zip(values, along, strict=True):
+            same = fitting.fixed(with_value(anchor, p, float(value)), first)
             if ((same.variance - UNSURE * here.variance) / GRAZING).max() > slack:
                 found.append(p)
                 break
@@ -153,50 +155,32 @@ def mixture(
         size = 8 * len(lobes) * count * len(theta_r) * len(angle) / THINNED
         if size <= BYTES and count <= box.effort.nodes:
             break
-    done: dict[tuple[int, ...], Lit] = {} if axes else {(): first}
-    order = sorted(product(*(range(len(kept[p][0])) for p in axes)), key=sum)
-    for number, index in enumerate(order if axes else []):
-        report(0.3 + 0.7 * number / len(order))
-        done[index] = _at_index(fitting, done, index, axes, kept, anchor)
     values = [kept[p][0] for p in axes]
+    at_anchor = tuple(nodes.place_of(v, anchor[p]) for p, v in zip(axes, values, strict=True))
+    done: dict[tuple[int, ...], Lit] = {}
+    order = nodes.from_place(at_anchor, tuple(len(v) for v in values))
+    for number, index in enumerate(order):
+        report(0.3 + 0.7 * number / len(order))
+        away = [a for a, i in enumerate(index) if i != at_anchor[a]]
+        place = anchor
+        for p, v, i in zip(axes, values, index, strict=True):
+            place = with_value(place, p, float(v[i]))
+        done[index] = fitting.at(place, done[nodes.nearer(index, at_anchor, away[-1])]) if away else first
     return _assembled(box, lobes, axes, values, done, theta_r, angle, allowed)
-
-
-def _at_index(
-    fitting: Fitting,
-    done: dict[tuple[int, ...], Lit],
-    index: tuple[int, ...],
-    axes: tuple[int, ...],
-    kept: dict[int, tuple[Array, list[Lit]]],
-    anchor: Place,
-) -> Lit:
-    """The shares and turns at the product's node index, from those of the node before it."""
-    used = [a for a, i in enumerate(index) if i]
-    axis = used[-1] if used else 0
-    if len(used) <= 1:
-        return kept[axes[axis]][1][index[axis]]
-    before = done[(*index[:axis], index[axis] - 1, *index[axis + 1 :])]
-    place = anchor
-    for p, i in zip(axes, index, strict=True):
-        place = with_value(place, p, kept[p][0][i])
-    return fitting.at(place, before)
 
 
 def _nodes_along(
     box: Box, fitting: Fitting, first: Lit, anchor: Place, p: int, bend: Array, allowed: float
 ) -> tuple[Array, list[Lit]]:
-    """The nodes of one parameter, from the anchor's end on, and what is there."""
-    values = box.steps(p, box.effort.steps)
-    values = values if values[0] == anchor[p] else values[::-1]
-    along = [first]
-    for value in values[1:]:
-        along.append(fitting.at(with_value(anchor, p, value), along[-1]))
+    """The nodes of one parameter, the anchor's value among them, and what is there."""
+
+    def beside(one: Lit, value: float) -> Lit:
+        return fitting.at(with_value(anchor, p, value), one)
+
+    values = box.steps(p, box.effort.steps, anchor[p])
+    along = nodes.outwards(values, anchor[p], first, beside)
     return nodes.chosen(
-        values,
-        along,
-        lambda values, along: _Loss(values, along, bend),
-        lambda one, value: fitting.at(with_value(anchor, p, value), one),
-        allowed,
+        values, along, anchor[p], lambda values, along: _Loss(values, along, bend), beside, allowed
     )
 
 
@@ -270,14 +254,13 @@ def _assembled(
     viewers = _fewest(share, turn, 1, theta_r, bend, allowed["theta_r"])
     share, turn, theta_r = share[:, viewers], turn[:, viewers], theta_r[viewers]
     share, turn = (np.moveaxis(part.reshape(*shape, *part.shape[1:]), -1, 0) for part in (share, turn))
-    backward = tuple(a + 1 for a, v in enumerate(values) if v[0] > v[-1])  # the anchor comes first
-    named = tuple(Axis(box.parameters[p].name, np.sort(v)) for p, v in zip(axes, values, strict=True))
+    named = tuple(Axis(box.parameters[p].name, v) for p, v in zip(axes, values, strict=True))
     return Mixture(
         tuple(one.name for one in lobes),
         theta_r,
         np.sin(angle),
-        np.flip(share, backward),
-        wrap(np.flip(turn, backward)),
+        share,
+        wrap(turn),
         box.hair.mirrored,
         named,
     )

@@ -38,16 +38,49 @@ def fewest(count: int, loss: Loss, allowed: float) -> list[int]:
     return chosen[::-1]
 
 
+def outwards(values: Array, start: float, first: T, beside: Callable[[T, float], T]) -> list[T]:
+    """What is found at each of the values (n,), from that at one of them, each by beside(one, value) from the
+    one before it."""
+    at = place_of(values, start)
+    up, down = [first], [first]
+    for value in values[at + 1 :]:
+        up.append(beside(up[-1], float(value)))
+    for value in values[:at][::-1]:
+        down.append(beside(down[-1], float(value)))
+    return down[:0:-1] + up
+
+
+def place_of(values: Array, value: float) -> int:
+    """The number of a value."""
+    return int(abs(np.asarray(values) - value).argmin())
+
+
+def from_place(first: tuple[int, ...], shape: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """All indices of an array of a shape, those nearest to the first one first."""
+
+    def distance(index: tuple[int, ...]) -> int:
+        return sum(abs(i - f) for i, f in zip(index, first, strict=True))
+
+    return sorted(np.ndindex(shape), key=distance)
+
+
+def nearer(index: tuple[int, ...], first: tuple[int, ...], axis: int) -> tuple[int, ...]:
+    """The index that is one nearer to the first along an axis."""
+    step = 1 if index[axis] > first[axis] else -1
+    return (*index[:axis], index[axis] - step, *index[axis + 1 :])
+
+
 def chosen(
     values: Array,
     along: list[T],
+    kept: float,
     loss_of: Callable[[Array, list[T]], Loss],
     beside: Callable[[T, float], T],
     allowed: float,
 ) -> tuple[Array, list[T]]:
-    """The fewest of an axis' values that are needed, and what is there. values (n,), in either order, and
-    what was found at each; loss_of: of such, the loss of fewest; beside(one, value): what is found at a value
-    from one beside it. Where a value left out loses far too much, values between are tried too."""
+    """The fewest of an axis' values that are needed, one that is kept among them, and what is there. values
+    (n,), and what was found at each; loss_of: of such, the loss of fewest; beside(one, value): what is found
+    at a value from one beside it. Where a value left out loses far too much, values between are tried too."""
     values, along = list(values), list(along)
     while True:
         loss = loss_of(np.array(values), along)
@@ -59,5 +92,8 @@ def chosen(
             value = (values[gap] + values[gap + 1]) / 2
             along.insert(gap + 1, beside(along[gap], value))
             values.insert(gap + 1, value)
-    kept = fewest(len(values), loss, allowed)
-    return np.array([values[i] for i in kept]), [along[i] for i in kept]
+    at = place_of(np.array(values), kept)
+    below = fewest(at + 1, loss, allowed)
+    above = fewest(len(values) - at, lambda i, j: loss(at + i, at + j), allowed)
+    numbers = below + [at + i for i in above[1:]]
+    return np.array([values[i] for i in numbers]), [along[i] for i in numbers]

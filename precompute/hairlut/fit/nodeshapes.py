@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 
@@ -87,7 +86,9 @@ def _chosen(
         def loss_of(values: Array, along: list[Shapes], moving=moving) -> nodes.Loss:
             return _Blending(values, along, moving)
 
-        result[p] = nodes.chosen(values, along, loss_of, beside, allowed[box.parameters[p].name])
+        result[p] = nodes.chosen(
+            values, along, found.places[0][p], loss_of, beside, allowed[box.parameters[p].name]
+        )
     return result
 
 
@@ -190,35 +191,25 @@ def _grid(
     by the values of axes of both kinds."""
     values = [along[p][0] for p in axes]
     both = [a for a, p in enumerate(axes) if p in found.theta and p in found.phi]
+    first = tuple(nodes.place_of(v, found.places[0][p]) for p, v in zip(axes, values, strict=True))
     done: dict[tuple[int, ...], Shapes] = {}
-    order = sorted(product(*(range(len(v)) for v in values)), key=sum)  # the anchor is the first of each
+    order = nodes.from_place(first, tuple(len(v) for v in values))
     for number, index in enumerate(order):
         report(number / len(order))
-        of_one_kind = [a for a, i in enumerate(index) if i and a not in both]
+        away = [a for a, i in enumerate(index) if i != first[a]]
+        of_one_kind = [a for a in away if a not in both]
         if known and not of_one_kind:
             done[index] = known[tuple((axes[a], float(values[a][index[a]])) for a in both)]
             continue
-        if not any(index):
+        if not away:
             done[index] = start
             continue
-        axis = max(of_one_kind or [a for a, i in enumerate(index) if i])
-        before = done[(*index[:axis], index[axis] - 1, *index[axis + 1 :])]
+        axis = max(of_one_kind or away)
+        before = done[nodes.nearer(index, first, axis)]
         places = tuple(with_value(place, axes[axis], values[axis][index[axis]]) for place in before.places)
         moving = axes[axis] in found.theta, axes[axis] in found.phi
         done[index] = shapes.followed(box, before, places, moving)
-    return _increasing(NodeShapes(axes, tuple(values), done))
-
-
-def _increasing(grid: NodeShapes) -> NodeShapes:
-    """The grid with its nodes in order: the anchor may be at the end of an axis."""
-    turned = [bool(v[0] > v[-1]) for v in grid.nodes]
-    at = {
-        tuple(len(v) - 1 - i if t else i for i, v, t in zip(index, grid.nodes, turned, strict=True)): one
-        for index, one in grid.at.items()
-    }
-    return NodeShapes(
-        grid.axes, tuple(v[::-1] if t else v for v, t in zip(grid.nodes, turned, strict=True)), at
-    )
+    return NodeShapes(axes, tuple(values), done)
 
 
 def _part(grid: NodeShapes, axes: tuple[int, ...], anchor: Place) -> NodeShapes:

@@ -20,12 +20,12 @@ from ..errors import HairlutError
 from ..lobes import HALF_PI, Array
 from ..model import BakedModel
 from . import boxeffort, boxpromise, cells, dependence, effort, nodemixture, nodeshapes, nodetables, shapes
-from .box import Box
+from .box import Box, Place
 from .boxeffort import BoxEffort
 from .boxpromise import Measured
 from .dependence import Dependence
 from .refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS
-from .shapes import Anchor, Shapes
+from .shapes import Shapes
 
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
 LIMITS = {"theta_r": 145, "offset": 65}
@@ -60,9 +60,9 @@ def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float,
     start = perf_counter()
     random = np.random.default_rng(0)
     box = replace(box, effort=_effort(box, budget))
-    anchor = shapes.anchor_of(box, lobes, lambda share: report("choosing lobes", share))
+    place, count = shapes.anchor_of(box, lobes, lambda share: report("choosing lobes", share))
     counts = {"theta_r": box.effort.rows, "offset": box.effort.offset}
-    full = _at_anchor(box, anchor, counts["theta_r"], report)
+    full = _at_anchor(box, place, count, counts["theta_r"], report)
     found = _dependence(box, full, report)
     allowed = {axis: NODE_PART * tolerance for axis in (*counts, *(p.name for p in box.parameters))}
     best: FittedBox | None = None
@@ -71,7 +71,7 @@ def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float,
         so_far, until = _report(report, best), _until(box, start + budget) if best else box
         try:
             if full.theta_r.size != counts["theta_r"]:
-                full = _at_anchor(until, anchor, counts["theta_r"], so_far)
+                full = _at_anchor(until, place, count, counts["theta_r"], so_far)
             fitted = _fit_once(until, name, full, found, counts, allowed, tolerance, random, so_far)
         except _OutOfTime:
             return best
@@ -157,10 +157,10 @@ def _report(report: Report, best: FittedBox | None) -> Report:
     return so_far
 
 
-def _at_anchor(box: Box, anchor: Anchor, rows: int, report: Report) -> Shapes:
+def _at_anchor(box: Box, place: Place, count: int, rows: int, report: Report) -> Shapes:
     """The lobes at the anchor: with turns where those gain."""
-    turning = box.hair.offsets and shapes.turns(box, anchor)
-    return shapes.at_anchor(box, anchor, turning, rows, lambda share: report("fitting lobes", share))
+    turning = box.hair.offsets and shapes.turns(box, place, count)
+    return shapes.at_anchor(box, place, count, turning, rows, lambda share: report("fitting lobes", share))
 
 
 def _dependence(box: Box, anchor: Shapes, report: Report) -> Dependence:

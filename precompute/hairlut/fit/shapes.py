@@ -22,7 +22,6 @@ from .refine import GAIN, MAX_LOBES, PART, bright_parts, fit_rows
 from .tied import Block
 from .turning import TWO_PI
 
-WAY = 6  # steps from the richest place to the corner
 JOINT = 24  # sweeps of rows that get the same azimuths
 BOTH, THETA, PHI, NEITHER = (True, True), (True, False), (False, True), (False, False)
 
@@ -76,28 +75,17 @@ class Shapes:
         return replace(self, rows=rows)
 
 
-@dataclass(frozen=True)
-class Anchor:
-    """corner: from which lobes are followed, of those that need most lobes that which loses most with one
-    fewer. richest: a place that needs as many lobes as any: a corner may lack one, as its share may end at 0
-    there. count: how many."""
-
-    corner: Place
-    richest: Place
-    count: int
-
-
-def anchor_of(box: Box, lobes: int | None, report: Callable[[float], None]) -> Anchor:
-    """Where to begin, and with how many lobes, or the given number."""
+def anchor_of(box: Box, lobes: int | None, report: Callable[[float], None]) -> tuple[Place, int]:
+    """(the place from which lobes are followed, how many): the corner that needs most, of equal ones that
+    which loses most with one fewer; or a place inside, where corners lack a lobe whose share ends at 0."""
     places = [*box.corners(), box.standard, box.middle]
     found = []
     for at, place in enumerate(places):
         report(at / len(places))
         found.append((*_needed(box, place, lobes), place))
     corner, richest = max(found[:-2], key=_most), max(found, key=_most)
-    if corner[0] == richest[0]:
-        richest = corner
-    return Anchor(corner[2], richest[2], richest[0])
+    count, _, place = corner if corner[0] == richest[0] else richest
+    return place, count
 
 
 def _most(needed: tuple[int, float, Place]) -> tuple[int, float]:
@@ -122,28 +110,22 @@ def _needed(box: Box, place: Place, lobes: int | None) -> tuple[int, float]:
     return lobes or count + 1, reached[count - 1] if count else np.inf
 
 
-def at_anchor(box: Box, anchor: Anchor, turning: bool, rows: int, report: Callable[[float], None]) -> Shapes:
-    """The lobes of so many rows of theta_r at the anchor's corner, from nothing; by way of the richest place.
-    A lobe whose light ends on the way keeps its last shapes."""
+def at_anchor(
+    box: Box, place: Place, count: int, turning: bool, rows: int, report: Callable[[float], None]
+) -> Shapes:
+    """The lobes of so many rows of theta_r at one place, from nothing."""
     angle, theta_r = box.hair.angles(box.effort.fitted_offsets), box.hair.rows(rows)
-    place = anchor.richest
     edges = _edges(box, (place,), theta_r, angle)
     viewers = theta_r[list(some(rows))]
     m = min(cells.phi_count(box.density_at(place), viewers, np.sin(angle)), box.effort.most_phi)
     data = cells.of_density(box.density_at(place), theta_r, np.sin(angle), edges, m)
-    fitted = fit_rows(data, angle, anchor.count, turning, report)
+    fitted = fit_rows(data, angle, count, turning, report)
     blocks = [Block(mass, j, j) for j, mass in enumerate(data.mass)]
-    found = Shapes((place,), theta_r, angle, edges, blocks, fitted, False)
-    if place != anchor.corner:
-        for t in np.arange(1, WAY + 1) / WAY:
-            at = tuple(float(a + t * (b - a)) for a, b in zip(place, anchor.corner, strict=True))
-            found = followed(box, found, (anchor.corner if t == 1 else at,), BOTH)
-    return found
+    return Shapes((place,), theta_r, angle, edges, blocks, fitted, False)
 
 
-def turns(box: Box, anchor: Anchor) -> bool:
+def turns(box: Box, place: Place, count: int) -> bool:
     """Whether the lobes lose more where they may not turn."""
-    place, count = anchor.richest, anchor.count
     angle, theta_r = box.hair.angles(box.effort.fitted_offsets), box.hair.rows(3)[1:2]
     edges = _edges(box, (place,), theta_r, angle)
     mass = _blocks(box, (place,), theta_r, angle, edges, False)[0].mass

@@ -9,7 +9,7 @@ import pytest
 
 from hairlut import cli, exr
 from hairlut.axes import Parameter
-from hairlut.fit import box, nodes, shapes, tied
+from hairlut.fit.strands import box, nodes, shapes, tied
 
 HAIR = """
 import numpy as np

@@ -22,7 +22,8 @@ import hairlut
 from hairlut import exr
 from hairlut.axes import corners
 from hairlut.files import write_whole
-from hairlut.fit import box, boxsummary, bsdf, parameters
+from hairlut.fit import bsdf
+from hairlut.fit.strands import box, fit, summary
 from hairlut.model import BakedLobe, BakedModel
 from report import parameters_page
 from report.places import PAGES, ROOT
@@ -40,11 +41,11 @@ DATA = PAGES / "parameters.json"
 def fitted(tolerance: float, given: box.Box) -> dict:
     """What a fit costs and promises, and what its files keep at random parameters."""
     start = process_time()
-    found = parameters.fit(given, "hair", tolerance, None, BUDGET, lambda stage, share: None)
+    found = fit.fit(given, "hair", tolerance, None, BUDGET, lambda stage, share: None)
     with tempfile.TemporaryDirectory() as folder:
-        paths = exr.write_model(Path(folder), boxsummary.with_errors(found))
+        paths = exr.write_model(Path(folder), summary.with_errors(found))
         seconds = process_time() - start
-        reported = boxsummary.data(found, tolerance)
+        reported = summary.data(found, tolerance)
         model = hairlut.load(folder)
 
         def drawn(place, theta_r, theta_i, phi, offset):

@@ -166,8 +166,9 @@ def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: R
 def _of_parameters(
     density: Callable, offsets: bool, parameters: tuple, args: argparse.Namespace, name: str, report: Report
 ) -> tuple:
-    from ..fit import box, boxsummary, promise, warnings
-    from ..fit import parameters as fitting
+    from ..fit import promise, warnings
+    from ..fit.strands import box, summary
+    from ..fit.strands import fit as fitting
 
     budget = args.budget or DEFAULT_BUDGET_OF_PARAMETERS
     with _named(args.data):
@@ -176,11 +177,11 @@ def _of_parameters(
     if args.plot:
         _plot(args.plot, lambda kind: _plotted_parameters(found, name, kind))
     what = f"a BSDF over {', '.join(parameter.name for parameter in parameters)}"
-    figures = {"data": what, **boxsummary.data(found, args.tolerance)}
-    text = f"{args.data}: {what}\n{boxsummary.text(found, args.tolerance)}"
+    figures = {"data": what, **summary.data(found, args.tolerance)}
+    text = f"{args.data}: {what}\n{summary.text(found, args.tolerance)}"
     at = found.measured
     losses = promise.Losses(at.theta_r, at.offset, at.variance, at.weight, at.light)
-    return boxsummary.with_errors(found), text, figures, warnings.warnings(given.hair, losses)
+    return summary.with_errors(found), text, figures, warnings.warnings(given.hair, losses)
 
 
 @contextmanager

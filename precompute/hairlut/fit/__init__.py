@@ -6,8 +6,5 @@ or cells of them. factor, highlights, turning and lobesfit find lobes, smooth an
 measures the textures, and refine does all that again with finer cells until it is good enough. effort chooses
 how coarse it starts within a budget of time. summary, warnings and plot report.
 
-A hair with named parameters is a box of hairs. shapes finds its lobes at one corner, by the updates of tied,
-and follows them through the box; dependence says which of them a parameter changes. nodeshapes, nodetables
-and nodemixture choose each axis' nodes (nodes) and bake over them, boxpromise measures, parameters does it
-all, and boxsummary reports.
+strands/ does the same for a hair with named parameters, whose strands may differ.
 """

@@ -10,8 +10,8 @@ from .. import figures
 from ..lobes import HALF_PI, Array
 from . import promise
 from .hair import Hair
-from .parameters import FittedBox
 from .refine import Fitted
+from .strands.fit import FittedBox
 from .turning import TWO_PI
 
 VIEWERS = -60.0, 0.0, 60.0  # deg

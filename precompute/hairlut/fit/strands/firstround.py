@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .cells import AROUND, GAUSS
-from .effort import Pace
+from ..cells import AROUND, GAUSS
+from ..effort import Pace
 
 FIRST_ROUND = 0.8  # of the budget
 CHOICE = 400  # sweeps of a block while the number of lobes is chosen

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From a hair with parameters to one baked model over all their values.
 
-The lobes are found at one corner of the box of parameters and followed from there (shapes.py). Tables get the
+The lobes are found at one place in the box of parameters and followed from there (shapes.py). Tables get the
 axes on which their shapes depend (dependence.py), with as many nodes as blending needs (nodeshapes.py); the
 mixture gets those on which shares or turns depend (nodemixture.py). What the baked model loses is measured at
-random places in the box. Where that is too much, the axes that lose most are refined, as long as the budget
+random places in the box (losses.py). Where that is too much, the axes that lose most are refined, as long as the budget
 lasts."""
 
 from __future__ import annotations
@@ -15,16 +15,17 @@ from time import perf_counter
 
 import numpy as np
 
-from ..axes import MAX_AXES
-from ..errors import HairlutError
-from ..lobes import HALF_PI, Array
-from ..model import BakedModel
-from . import boxeffort, boxpromise, cells, dependence, effort, nodemixture, nodeshapes, nodetables, shapes
+from ...axes import MAX_AXES
+from ...errors import HairlutError
+from ...lobes import HALF_PI, Array
+from ...model import BakedModel
+from .. import cells, effort
+from ..refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS
+from . import dependence, firstround, losses, nodemixture, nodeshapes, nodetables, shapes
 from .box import Box, Place
-from .boxeffort import BoxEffort
-from .boxpromise import Measured
 from .dependence import Dependence
-from .refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS
+from .firstround import BoxEffort
+from .losses import Measured
 from .shapes import Shapes
 
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
@@ -39,7 +40,7 @@ Report = Callable[[str, float], None]
 class FittedBox:
     """A baked model over the parameters of a box. counts: rows of theta_r and offsets that were fitted;
     allowed: V that each axis might cost; reach: V that so many lobes have on the cells they were fitted to;
-    measured: losses at random places; lost: V by axis that its nodes' distance costs."""
+    measured: V and weights at random places; lost: V that each axis costs (losses.py)."""
 
     box: Box
     model: BakedModel
@@ -86,14 +87,14 @@ def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float,
 def _effort(box: Box, budget: float) -> BoxEffort:
     """What the budget allows, by the corner that needs most cells of the azimuth."""
     theta_r, offset = np.array([0.4]), np.sin(box.hair.angles(box.effort.fitted_offsets))
-    corners = replace(box, effort=boxeffort.EFFORTS[-1]).corners()
+    corners = replace(box, effort=firstround.EFFORTS[-1]).corners()
     phi = max(cells.phi_count(box.density_at(place), theta_r, offset[:1]) for place in corners)
     edges = np.linspace(-HALF_PI, HALF_PI, box.effort.theta_i + 1)[None]
     began = perf_counter()
     mass = cells.of_density(box.hair.density, theta_r, offset, edges, phi).mass
     value = (perf_counter() - began) / (mass.size * cells.GAUSS.size**2)
     pace = replace(effort.pace(box.hair), value=value)
-    return boxeffort.affordable(pace, len(box.parameters), box.hair.offsets, phi, budget)
+    return firstround.affordable(pace, len(box.parameters), box.hair.offsets, phi, budget)
 
 
 def limits(found: FittedBox, tolerance: float) -> list[str]:
@@ -211,8 +212,8 @@ def _fit_once(
     )
     model = BakedModel(name, tuple(lobes), mixture, {}, box.parameters)
     report("measuring", 0.0)
-    measured = boxpromise.measured(box, model, random, lambda share: report("measuring", share))
-    lost = boxpromise.lost(box, model, random)
+    measured = losses.measured(box, model, random, lambda share: report("measuring", share))
+    lost = losses.lost(box, model, random)
     if not np.isfinite(measured.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
     return FittedBox(box, model, counts, allowed, reach, measured, lost)

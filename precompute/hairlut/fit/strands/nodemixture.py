@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Shares and turns of lobes whose shapes are known, over the parameters, theta_r and the offset.
 
-They are fitted to the hair with what the baked tables draw, at candidates of nodes. Of these each axis keeps
-the fewest from which the rest is blended well enough, measured by a bound of V: for shares s_k blended as q_k
-and turns that are off by d_k,
+They are fitted to the hair with what the baked tables draw, at candidate nodes. Each axis keeps the fewest of
+them from which blending gives the others well enough (nodes.py), measured by a bound of V: for shares s_k
+blended as q_k and turns that are off by d_k,
 
     V <= sum over k of (s_k - q_k)^2 / q_k + q_k d_k^2 I_k,   I_k = integral of B_k'^2 / B_k dphi,
 
@@ -17,15 +17,16 @@ from itertools import product
 
 import numpy as np
 
-from ..axes import Axis
-from ..lobes import Array
-from ..mixture import Mixture, wrap
-from ..model import BakedLobe
-from . import cells, nodes, nodetables
+from ...axes import Axis
+from ...lobes import Array
+from ...mixture import Mixture, wrap
+from ...model import BakedLobe
+from .. import cells
+from ..lobesfit import Row, same_shapes
+from ..turning import TWO_PI
+from . import nodes, nodetables
 from .box import Box, Place, with_value
-from .lobesfit import Row, same_shapes
 from .shapes import Shapes
-from .turning import TWO_PI
 
 MOST_PHI = 144  # cells of phi: shapes are known, and cells need not resolve them
 FEW_OFFSETS = 13  # by which dependences are found

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The shapes of a hair's lobes at the nodes of the parameters on which they depend.
 
-The nodes of a parameter are the fewest between which quantiles are blended well enough: as few as a scale
-that changes by a few powers needs. Shapes are followed from node to node, from the anchor outwards."""
+A parameter gets the fewest nodes between which blending quantiles is good enough (nodes.py). Shapes are
+followed from node to node, from the anchor outwards."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import interpolant
-from ..lobes import Array
-from ..table import exact_knots
-from ..warp import Warp
-from . import nodes, shapes, smooth, tables
+from ... import interpolant
+from ...lobes import Array
+from ...table import exact_knots
+from ...warp import Warp
+from .. import smooth, tables
+from ..turning import TWO_PI
+from . import nodes, shapes
 from .box import Box, Place, with_value
 from .dependence import Dependence
 from .shapes import BOTH, THETA, Shapes
-from .turning import TWO_PI
 
 WIDTH, WARP = 64, Warp("octaves", 2.0**-11)  # of the tables by which nodes are chosen
 BYTES, USUAL_WIDTH = 700_000, 24  # of all tables, about
@@ -29,8 +30,8 @@ ENOUGH_JOINED = 2  # places by which the shapes of all rows are fitted
 
 @dataclass(frozen=True)
 class NodeShapes:
-    """Shapes at the nodes of some parameters. axes: their numbers; nodes: the values of each, increasing;
-    at: by the numbers of nodes."""
+    """Shapes at the nodes of some parameters. axes: the parameters' numbers; nodes: the values of each,
+    increasing; at: the shapes, by the numbers of the nodes along the axes."""
 
     axes: tuple[int, ...]
     nodes: tuple[Array, ...]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What draws of a baked model over parameters cost, at random parameters, viewers and offsets."""
+"""V and the largest weights of a baked model over parameters, at random parameters, viewers and offsets."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..axes import Axis
-from ..lobes import Array
-from ..model import BakedModel
-from . import cells, promise
+from ...axes import Axis
+from ...lobes import Array
+from ...model import BakedModel
+from .. import cells, promise
 from .box import Box
 
 OFFSETS = 4
@@ -43,8 +43,8 @@ def measured(
 
 
 def lost(box: Box, model: BakedModel, random: np.random.Generator) -> dict[str, float]:
-    """V by axis that its nodes' distance costs: the mean of V at random places, less that at the nearest node
-    of the axis. A parameter's is the largest of its axes'."""
+    """V that blending between an axis' nodes costs, by axis: the mean of V at random places, less the mean
+    where each is moved to the axis' nearest node. A parameter has that of the worst of its axes."""
     parameters, theta_r, offset = _places(box, PAIRS, random)
     base = _at(box, model, parameters, theta_r, offset, random)[0].mean()
     found: dict[str, float] = {}

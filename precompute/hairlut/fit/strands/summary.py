@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from ..lobes import Array
-from ..model import BakedModel
-from .parameters import FittedBox, limits
-from .summary import QUANTILE, lobes_text
+from ...lobes import Array
+from ...model import BakedModel
+from ..summary import QUANTILE, lobes_text
+from .fit import FittedBox, limits
 
 BANDS = 5  # of a parameter in the text
 

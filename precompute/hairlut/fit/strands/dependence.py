@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which shapes of a hair's lobes depend on which parameter.
 
-A parameter that changes only how much light a lobe has and where it is turned to needs no axis in its tables:
-the same shapes then draw several of its values together, nearly as well as shapes of their own. For the
-others, the lobes are followed from the anchor through the parameter's range, once with all shapes free, once
-with the inclinations alone, once with the azimuths alone: a table gets the axis where fixed shapes lose."""
+A parameter that changes only how much light a lobe has, or by what angle it is turned, needs no axis in the
+lobe's tables: one set of shapes then fits several of its values together, nearly as well as a set for each.
+For the others, the lobes are followed from the anchor through the parameter's range, once with all shapes
+free, once with only the inclinations free, once with only the azimuths: a table gets the axis where it
+costs V to keep the shapes fixed."""
 
 from __future__ import annotations
 
@@ -20,8 +21,8 @@ from .shapes import BOTH, NEITHER, PHI, THETA, Shapes
 
 JOINED = 4  # values of a parameter that are fitted together with the anchor's
 PATIENCE = 4  # times as many sweeps as usual until lobes that one place mixes are told apart by several
-HOPELESS = 2.0  # V of shapes that are kept from the anchor, at which they are no start for that
-SLACK = 0.004  # of V by which shapes that are fixed may lose
+HOPELESS = 2.0  # V above which the anchor's shapes are no start for values fitted together
+SLACK = 0.004  # of V that fixed shapes may cost
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Dependence:
 
 
 def dependence(box: Box, anchor: Shapes, report: Callable[[float], None]) -> Dependence:
-    """What depends on what, found at some theta_r of the anchor's shapes."""
+    """Which shapes depend on which parameter; anchor: the shapes there, of a few theta_r."""
     base, count = anchor, len(box.parameters)
     places = anchor.places
     kept = []

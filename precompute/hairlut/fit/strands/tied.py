@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..lobes import Array
-from .factor import POWER, excess, filled
-from .lobesfit import FAINT, LEAST_SHARE, Row, evened, stepped
-from .turning import turned
+from ...lobes import Array
+from ..factor import POWER, excess, filled
+from ..lobesfit import FAINT, LEAST_SHARE, Row, evened, stepped
+from ..turning import turned
 
 FRESH = 0.005  # part of an expected shape that is replaced by the light, or by an even azimuth
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The fewest nodes of an axis between which what lies there is blended well enough."""
+"""The fewest nodes of an axis between which blending is good enough."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..lobes import Array
+from ...lobes import Array
 
 T = TypeVar("T")
 Loss = Callable[[int, int], float]
-TOO_FAR = (
-    8.0  # times what is allowed: a loss that falls with the fourth power of the distance then is, halved
-)
+TOO_FAR = 8.0
+"""Times what is allowed, below which halving a gap is enough: the loss falls with its fourth power."""
 MOST = 24  # values of an axis that are tried
 
 
 def fewest(count: int, loss: Loss, allowed: float) -> list[int]:
-    """Numbers of nodes, first and last among them, of `count` candidates in order: the fewest such that the
-    loss between any two neighbours is allowed, or is that of candidates with none between; of as many, those
-    whose largest loss is least. loss(i, j): the largest loss of the candidates between i and j, blended."""
+    """Which of `count` candidates along an axis become nodes: as few as possible, the first and the last
+    among them, with loss(i, j) <= allowed between neighbouring nodes i and j; of sets of that size the one
+    whose largest loss is least. loss(i, j): of the candidates between i and j, the largest loss where they
+    are blended from those two."""
     best: list[tuple[int, float, int]] = [(0, 0.0, -1)]  # by candidate: nodes before it, their loss, the last
     for j in range(1, count):
         options = []
@@ -39,8 +39,8 @@ def fewest(count: int, loss: Loss, allowed: float) -> list[int]:
 
 
 def outwards(values: Array, start: float, first: T, beside: Callable[[T, float], T]) -> list[T]:
-    """What is found at each of the values (n,), from that at one of them, each by beside(one, value) from the
-    one before it."""
+    """The fit at each of the values (n,): `first` at the value `start`, and from there on both ways each by
+    beside(fit, value) from its neighbour's."""
     at = place_of(values, start)
     up, down = [first], [first]
     for value in values[at + 1 :]:
@@ -78,9 +78,10 @@ def chosen(
     beside: Callable[[T, float], T],
     allowed: float,
 ) -> tuple[Array, list[T]]:
-    """The fewest of an axis' values that are needed, one that is kept among them, and what is there. values
-    (n,), and what was found at each; loss_of: of such, the loss of fewest; beside(one, value): what is found
-    at a value from one beside it. Where a value left out loses far too much, values between are tried too."""
+    """The fewest nodes of an axis, the value `kept` among them, and the fit at each. values (n,): candidates;
+    along: the fit at each; loss_of: the loss that `fewest` takes, of candidates and fits; beside(fit, value):
+    a fit at a value that starts from a neighbour's. Where candidates are too far apart, more are fitted
+    between them."""
     values, along = list(values), list(along)
     while True:
         loss = loss_of(np.array(values), along)

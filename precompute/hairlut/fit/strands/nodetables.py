@@ -8,21 +8,21 @@ from itertools import product
 
 import numpy as np
 
-from .. import interpolant
-from ..axes import Axis
-from ..errors import HairlutError
-from ..lobes import Array
-from ..model import BakedLobe
-from ..table import Table
-from ..warp import Warp
-from . import tables
+from ... import interpolant
+from ...axes import Axis
+from ...errors import HairlutError
+from ...lobes import Array
+from ...model import BakedLobe
+from ...table import Table
+from ...warp import Warp
+from .. import tables
+from ..factor import variance
+from ..smooth import SmoothRows
+from ..tables import Need
+from ..turning import TWO_PI
 from .box import Box
-from .factor import variance
 from .nodeshapes import NodeShapes, exact_phi, exact_theta
 from .shapes import Shapes
-from .smooth import SmoothRows
-from .tables import Need
-from .turning import TWO_PI
 
 
 @dataclass(frozen=True)

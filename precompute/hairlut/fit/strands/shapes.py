@@ -12,15 +12,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..lobes import Array
-from ..mixture import wrap
-from . import cells, tied
+from ...lobes import Array
+from ...mixture import wrap
+from .. import cells
+from ..lobesfit import Row, first_row, one_more
+from ..refine import GAIN, MAX_LOBES, PART, bright_parts, fit_rows
+from ..turning import TWO_PI
+from . import tied
 from .box import Box, Place
-from .boxeffort import PARTS
-from .lobesfit import Row, first_row, one_more
-from .refine import GAIN, MAX_LOBES, PART, bright_parts, fit_rows
+from .firstround import PARTS
 from .tied import Block
-from .turning import TWO_PI
 
 JOINT = 24  # sweeps of rows that get the same azimuths
 BOTH, THETA, PHI, NEITHER = (True, True), (True, False), (False, True), (False, False)

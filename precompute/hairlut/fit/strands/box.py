@@ -11,11 +11,11 @@ from itertools import product
 
 import numpy as np
 
-from ..axes import Parameter
-from ..lobes import Array
-from .boxeffort import FULL, BoxEffort
-from .cells import Density
-from .hair import Hair, of_density
+from ...axes import Parameter
+from ...lobes import Array
+from ..cells import Density
+from ..hair import Hair, of_density
+from .firstround import FULL, BoxEffort
 
 Place = tuple[float, ...]
 RATIO = 4.0  # of the ends of a range from which on steps along it are equal factors

@@ -4,8 +4,8 @@
 The lobes are found at one place in the box of parameters and followed from there (shapes.py). Tables get the
 axes on which their shapes depend (dependence.py), with as many nodes as blending needs (nodeshapes.py); the
 mixture gets those on which shares or turns depend (nodemixture.py). What the baked model loses is measured at
-random places in the box (losses.py). Where that is too much, the axes that lose most are refined, as long as the budget
-lasts."""
+random places in the box (losses.py). Where that is too much, the axes that lose most are refined, as long as
+the budget lasts."""
 
 from __future__ import annotations
 

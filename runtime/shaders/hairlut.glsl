@@ -38,6 +38,7 @@ precision highp int;
 
 HAIRLUT_CONST int hairlut_max_lobes = HAIRLUT_LOBE_LIMIT;
 HAIRLUT_CONST int hairlut_max_parameters = HAIRLUT_PARAMETER_LIMIT;
+HAIRLUT_CONST int hairlut_parameter_slots = HAIRLUT_PARAMETER_LIMIT > 0 ? HAIRLUT_PARAMETER_LIMIT : 1;
 
 HAIRLUT_CONST int hairlut_uniform = 0; // azimuths: see hairlut_axis
 HAIRLUT_CONST int hairlut_difference = 1;
@@ -46,7 +47,7 @@ HAIRLUT_CONST int hairlut_sum = 2;
 /* What differs from strand to strand, such as a roughness: a value for each of the model's named parameters, in the order of
  * hair.json. Values are clamped to the parameter's range; with NaN the density is 0. */
 struct hairlut_parameters {
-    float value[hairlut_max_parameters];
+    float value[hairlut_parameter_slots];
 };
 
 /* One hair in the stream of texels that `hairlut export --to raw` writes. */
@@ -89,6 +90,7 @@ struct hairlut_numbers {
 struct hairlut_corners {
     int count;           // 2^d; 1 without parameters
     int first;           // texels from those of the first node to those of the lowest corner
+    float weight;        // of the lowest corner
     hairlut_float4 t;    // in [0,1], along each axis; 0 where there is none
     hairlut_float4 step; // texels from a node to the next one, likewise
 };
@@ -210,6 +212,7 @@ HAIRLUT_FN hairlut_model hairlut_model_at(HAIRLUT_SOURCE source, int first)
     if (head.x < 0.0f) {
         hairlut_float4 offsets = HAIRLUT_HEADER(source, first + 2);
         model.parameter_count = int(offsets.w);
+        model.lobes = hairlut_max_parameters > 0 ? model.lobes : 0;
     }
     for (int p = 0; p < hairlut_max_parameters; ++p) {
         model.parameters.value[p] = 0.0f;
@@ -242,6 +245,16 @@ HAIRLUT_FN hairlut_float4 hairlut_replaced(hairlut_float4 v, int a, float x)
     return changed;
 }
 
+HAIRLUT_FN hairlut_float4 hairlut_scaled(float weight, hairlut_float4 v)
+{
+    hairlut_float4 product;
+    product.x = weight * v.x;
+    product.y = weight * v.y;
+    product.z = weight * v.z;
+    product.w = weight * v.w;
+    return product;
+}
+
 /* sum + weight v */
 HAIRLUT_FN hairlut_float4 hairlut_added(hairlut_float4 sum, float weight, hairlut_float4 v)
 {
@@ -258,6 +271,7 @@ HAIRLUT_FN hairlut_corners hairlut_one_corner()
     hairlut_corners corners;
     corners.count = 1;
     corners.first = 0;
+    corners.weight = 1.0f;
     corners.t = hairlut_zeros();
     corners.step = hairlut_zeros();
     return corners;
@@ -286,8 +300,8 @@ HAIRLUT_FN int hairlut_search(HAIRLUT_SOURCE source, hairlut_corners corners, in
 {
     int node = 0;
     while (node < tree) {
-        hairlut_float4 keys = hairlut_zeros();
-        for (int c = 0; c < corners.count; ++c) {
+        hairlut_float4 keys = hairlut_scaled(corners.weight, HAIRLUT_FETCH(source, first + corners.first + node));
+        for (int c = 1; c < corners.count; ++c) {
             hairlut_corner corner = hairlut_corner_of(corners, c);
             if (corner.weight > 0.0f) {
                 keys = hairlut_added(keys, corner.weight, HAIRLUT_FETCH(source, first + corner.at + node));
@@ -334,8 +348,8 @@ HAIRLUT_FN float hairlut_parameter(hairlut_model model, int p)
 HAIRLUT_FN bool hairlut_parameters_known(hairlut_model model)
 {
     bool known = true;
-    for (int p = 0; p < hairlut_max_parameters; ++p) {
-        known = known && !(p < model.parameter_count && hairlut_is_nan(model.parameters.value[p]));
+    for (int p = 0; p < min(model.parameter_count, hairlut_max_parameters); ++p) {
+        known = known && !hairlut_is_nan(model.parameters.value[p]);
     }
     return known;
 }
@@ -346,7 +360,7 @@ HAIRLUT_FN bool hairlut_parameters_known(hairlut_model model)
 HAIRLUT_FN hairlut_corners hairlut_corners_of(hairlut_model model, int owner)
 {
     hairlut_corners corners = hairlut_one_corner();
-    if (model.parameter_count == 0) {
+    if (hairlut_max_parameters == 0 || model.parameter_count == 0) {
         return corners;
     }
     hairlut_float4 depends = HAIRLUT_HEADER(model.source, model.ranges + model.parameter_count + owner);
@@ -357,10 +371,11 @@ HAIRLUT_FN hairlut_corners hairlut_corners_of(hairlut_model model, int owner)
         corners.count *= 2;
         corners.first = corners.first * int(axis.y) + place.gap;
         corners.t = hairlut_replaced(corners.t, a, place.t);
-        corners.step = hairlut_replaced(hairlut_added(hairlut_zeros(), axis.y, corners.step), a, 1.0f);
+        corners.step = hairlut_replaced(hairlut_scaled(axis.y, corners.step), a, 1.0f);
     }
     corners.first *= int(depends.z);
-    corners.step = hairlut_added(hairlut_zeros(), depends.z, corners.step);
+    corners.step = hairlut_scaled(depends.z, corners.step);
+    corners.weight = (1.0f - corners.t.x) * (1.0f - corners.t.y) * (1.0f - corners.t.z) * (1.0f - corners.t.w);
     return corners;
 }
 
@@ -476,9 +491,10 @@ HAIRLUT_FN hairlut_cell hairlut_axis_cell(hairlut_axis axis, hairlut_rows rows, 
     int half_count = axis.columns / 2;
     int column = high ? half_count + i : i;
     int at = axis.first + half_count + column * axis.height + rows.row;
-    hairlut_float4 below = hairlut_zeros();
-    hairlut_float4 above = hairlut_zeros();
-    for (int c = 0; c < axis.corners.count; ++c) {
+    int lowest = at + axis.corners.first;
+    hairlut_float4 below = hairlut_scaled(axis.corners.weight, HAIRLUT_FETCH(axis.source, lowest));
+    hairlut_float4 above = hairlut_scaled(axis.corners.weight, HAIRLUT_FETCH(axis.source, lowest + 1));
+    for (int c = 1; c < axis.corners.count; ++c) {
         hairlut_corner corner = hairlut_corner_of(axis.corners, c);
         if (corner.weight > 0.0f) {
             below = hairlut_added(below, corner.weight, HAIRLUT_FETCH(axis.source, at + corner.at));
@@ -698,13 +714,11 @@ HAIRLUT_FN hairlut_pair hairlut_pair_at(hairlut_model model, hairlut_corners cor
     hairlut_float4 lowest = HAIRLUT_FETCH(model.source, at + corners.first + 1);
     hairlut_float4 arcs = hairlut_zeros();
     hairlut_pair pair;
-    pair.share = hairlut_zeros();
-    for (int c = 0; c < corners.count; ++c) {
+    pair.share = hairlut_scaled(corners.weight, HAIRLUT_FETCH(model.source, at + corners.first));
+    for (int c = 1; c < corners.count; ++c) {
         hairlut_corner corner = hairlut_corner_of(corners, c);
         if (corner.weight > 0.0f) {
             pair.share = hairlut_added(pair.share, corner.weight, HAIRLUT_FETCH(model.source, at + corner.at));
-        }
-        if (c > 0 && corner.weight > 0.0f) {
             hairlut_float4 turn = HAIRLUT_FETCH(model.source, at + corner.at + 1);
             hairlut_float4 arc;
             arc.x = hairlut_wrap(turn.x - lowest.x, -hairlut_pi);

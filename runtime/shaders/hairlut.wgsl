@@ -18,6 +18,7 @@
 
 const hairlut_max_lobes: i32 = 16;
 const hairlut_max_parameters: i32 = 8;
+const hairlut_parameter_slots: i32 = max(hairlut_max_parameters, 1);
 
 fn hairlut_bits(x: f32) -> u32 {
     return bitcast<u32>(x);
@@ -34,7 +35,7 @@ const hairlut_sum: i32 = 2;
 /* What differs from strand to strand, such as a roughness: a value for each of the model's named parameters, in the order of
  * hair.json. Values are clamped to the parameter's range; with NaN the density is 0. */
 struct hairlut_parameters {
-    value: array<f32, hairlut_max_parameters>,
+    value: array<f32, hairlut_parameter_slots>,
 }
 
 /* One hair in the stream of texels that `hairlut export --to raw` writes. */
@@ -77,6 +78,7 @@ struct hairlut_numbers {
 struct hairlut_corners {
     count: i32,  // 2^d; 1 without parameters
     first: i32,  // texels from those of the first node to those of the lowest corner
+    weight: f32, // of the lowest corner
     t: vec4f,    // in [0,1], along each axis; 0 where there is none
     step: vec4f, // texels from a node to the next one, likewise
 }
@@ -189,6 +191,7 @@ fn hairlut_model_at(source: i32, first: i32) -> hairlut_model {
     if (head.x < 0.0f) {
         let offsets = hairlut_header(source, first + 2);
         model.parameter_count = i32(offsets.w);
+        model.lobes = select(0, model.lobes, hairlut_max_parameters > 0);
     }
     for (var p = 0; p < hairlut_max_parameters; p++) {
         model.parameters.value[p] = 0.0f;
@@ -219,6 +222,15 @@ fn hairlut_replaced(v: vec4f, a: i32, x: f32) -> vec4f {
     return changed;
 }
 
+fn hairlut_scaled(weight: f32, v: vec4f) -> vec4f {
+    var product: vec4f;
+    product.x = weight * v.x;
+    product.y = weight * v.y;
+    product.z = weight * v.z;
+    product.w = weight * v.w;
+    return product;
+}
+
 /* sum + weight v */
 fn hairlut_added(sum: vec4f, weight: f32, v: vec4f) -> vec4f {
     var total: vec4f;
@@ -233,6 +245,7 @@ fn hairlut_one_corner() -> hairlut_corners {
     var corners: hairlut_corners;
     corners.count = 1;
     corners.first = 0;
+    corners.weight = 1.0f;
     corners.t = hairlut_zeros();
     corners.step = hairlut_zeros();
     return corners;
@@ -259,8 +272,8 @@ fn hairlut_corner_of(corners: hairlut_corners, c: i32) -> hairlut_corner {
 fn hairlut_search(source: i32, corners: hairlut_corners, first: i32, tree: i32, t: f32, x: f32) -> i32 {
     var node = 0;
     while (node < tree) {
-        var keys = hairlut_zeros();
-        for (var c = 0; c < corners.count; c++) {
+        var keys = hairlut_scaled(corners.weight, hairlut_fetch(source, first + corners.first + node));
+        for (var c = 1; c < corners.count; c++) {
             let corner = hairlut_corner_of(corners, c);
             if (corner.weight > 0.0f) {
                 keys = hairlut_added(keys, corner.weight, hairlut_fetch(source, first + corner.at + node));
@@ -304,8 +317,8 @@ fn hairlut_parameter(model: hairlut_model, p: i32) -> f32 {
 
 fn hairlut_parameters_known(model: hairlut_model) -> bool {
     var known = true;
-    for (var p = 0; p < hairlut_max_parameters; p++) {
-        known = known && !(p < model.parameter_count && hairlut_is_nan(model.parameters.value[p]));
+    for (var p = 0; p < min(model.parameter_count, hairlut_max_parameters); p++) {
+        known = known && !hairlut_is_nan(model.parameters.value[p]);
     }
     return known;
 }
@@ -315,7 +328,7 @@ fn hairlut_parameters_known(model: hairlut_model) -> bool {
  * of its nodes as above, with the number of its parameter; nodes that differ along the last axis alone follow each other. */
 fn hairlut_corners_of(model: hairlut_model, owner: i32) -> hairlut_corners {
     var corners = hairlut_one_corner();
-    if (model.parameter_count == 0) {
+    if (hairlut_max_parameters == 0 || model.parameter_count == 0) {
         return corners;
     }
     let depends = hairlut_header(model.source, model.ranges + model.parameter_count + owner);
@@ -326,10 +339,11 @@ fn hairlut_corners_of(model: hairlut_model, owner: i32) -> hairlut_corners {
         corners.count *= 2;
         corners.first = corners.first * i32(axis.y) + place.gap;
         corners.t = hairlut_replaced(corners.t, a, place.t);
-        corners.step = hairlut_replaced(hairlut_added(hairlut_zeros(), axis.y, corners.step), a, 1.0f);
+        corners.step = hairlut_replaced(hairlut_scaled(axis.y, corners.step), a, 1.0f);
     }
     corners.first *= i32(depends.z);
-    corners.step = hairlut_added(hairlut_zeros(), depends.z, corners.step);
+    corners.step = hairlut_scaled(depends.z, corners.step);
+    corners.weight = (1.0f - corners.t.x) * (1.0f - corners.t.y) * (1.0f - corners.t.z) * (1.0f - corners.t.w);
     return corners;
 }
 
@@ -439,9 +453,10 @@ fn hairlut_axis_cell(axis: hairlut_axis, rows: hairlut_rows, i: i32, high: bool)
     let half_count = axis.columns / 2;
     let column = select(i, half_count + i, high);
     let at = axis.first + half_count + column * axis.height + rows.row;
-    var below = hairlut_zeros();
-    var above = hairlut_zeros();
-    for (var c = 0; c < axis.corners.count; c++) {
+    let lowest = at + axis.corners.first;
+    var below = hairlut_scaled(axis.corners.weight, hairlut_fetch(axis.source, lowest));
+    var above = hairlut_scaled(axis.corners.weight, hairlut_fetch(axis.source, lowest + 1));
+    for (var c = 1; c < axis.corners.count; c++) {
         let corner = hairlut_corner_of(axis.corners, c);
         if (corner.weight > 0.0f) {
             below = hairlut_added(below, corner.weight, hairlut_fetch(axis.source, at + corner.at));
@@ -642,13 +657,11 @@ fn hairlut_pair_at(model: hairlut_model, corners: hairlut_corners, at: i32) -> h
     let lowest = hairlut_fetch(model.source, at + corners.first + 1);
     var arcs = hairlut_zeros();
     var pair: hairlut_pair;
-    pair.share = hairlut_zeros();
-    for (var c = 0; c < corners.count; c++) {
+    pair.share = hairlut_scaled(corners.weight, hairlut_fetch(model.source, at + corners.first));
+    for (var c = 1; c < corners.count; c++) {
         let corner = hairlut_corner_of(corners, c);
         if (corner.weight > 0.0f) {
             pair.share = hairlut_added(pair.share, corner.weight, hairlut_fetch(model.source, at + corner.at));
-        }
-        if (c > 0 && corner.weight > 0.0f) {
             let turn = hairlut_fetch(model.source, at + corner.at + 1);
             var arc: vec4f;
             arc.x = hairlut_wrap(turn.x - lowest.x, -hairlut_pi);

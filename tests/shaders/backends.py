@@ -214,7 +214,7 @@ def _text(array: np.ndarray) -> str:
 
 
 @functools.cache
-def cxx(folder: Path = SHADERS) -> ctypes.CDLL:
+def cxx(folder: Path = SHADERS, harness: str = "harness.cpp", defines: tuple[str, ...] = ()) -> ctypes.CDLL:
     """The body of folder/hairlut.cuh compiled as C++17; a warning in the shipped one is an error."""
     compiler = shutil.which(os.environ.get("CXX", "c++"))
     if compiler is None:
@@ -222,7 +222,8 @@ def cxx(folder: Path = SHADERS) -> ctypes.CDLL:
     out = Path(tempfile.mkdtemp(prefix="hairlut"), "body.so")
     flags = ["-std=c++17", "-O1", "-ffp-contract=off", "-shared", "-fPIC", f"-I{folder}", f"-I{HERE}"]
     flags += WARNINGS if folder == SHADERS else []
-    subprocess.run([compiler, *flags, HERE / "harness.cpp", "-o", out], check=True)
+    flags += [f"-D{define}" for define in defines]
+    subprocess.run([compiler, *flags, HERE / harness, "-o", out], check=True)
     return ctypes.CDLL(str(out))
 
 
@@ -232,6 +233,16 @@ def run_cxx(scene: Scene, records: np.ndarray, folder: Path = SHADERS) -> np.nda
     stream, records = (np.ascontiguousarray(part, np.float32) for part in (scene.stream, records))
     pointers = [ctypes.c_void_p(array.ctypes.data) for array in (stream, records, out)]
     cxx(folder).evaluate(pointers[0], scene.first, ctypes.c_size_t(len(records)), *pointers[1:])
+    return out
+
+
+def run_limited(stream: np.ndarray, records: np.ndarray, lobes: int, *defines: str) -> np.ndarray:
+    """(n, 2) densities: see limits.cpp."""
+    out = np.empty((len(records), 2), np.float32)
+    stream, records = (np.ascontiguousarray(part, np.float32) for part in (stream, records))
+    pointers = [ctypes.c_void_p(array.ctypes.data) for array in (stream, records, out)]
+    library = cxx(SHADERS, "limits.cpp", defines)
+    library.evaluate(pointers[0], ctypes.c_size_t(len(records)), pointers[1], lobes, pointers[2])
     return out
 
 

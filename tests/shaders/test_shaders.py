@@ -76,6 +76,31 @@ def test_parameters_change_what_is_drawn():
         assert (np.abs(here - there)[:, column] > 1e-2).mean() > 0.3
 
 
+@pytest.mark.parametrize(
+    ("name", "define", "lobes"),
+    [
+        ("near field", "HAIRLUT_PARAMETER_LIMIT=0", 16),
+        ("near field", "HAIRLUT_LOBE_LIMIT=2", 2),
+        ("strands", "HAIRLUT_PARAMETER_LIMIT=2", 16),
+        ("strands", "HAIRLUT_LOBE_LIMIT=3", 3),
+    ],
+)
+def test_a_lower_limit_leaves_out_what_is_beyond_it(name: str, define: str, lobes: int):
+    """Lobes beyond the limit are as if their shares were 0; parameters beyond it have standard values."""
+    model = MODELS[name]()
+    records = random_records(2000, model)
+    usual, limited = (
+        backends.run_limited(stream(model), records, lobes, *defines) for defines in ((), (define,))
+    )
+    assert (limited > 0).any()
+    assert np.array_equal(usual, limited)
+
+
+def test_without_the_code_for_parameters_a_model_that_has_them_draws_nothing():
+    records = random_records(100, strands())
+    assert not backends.run_limited(stream(strands()), records, 16, "HAIRLUT_PARAMETER_LIMIT=0").any()
+
+
 def test_a_shader_that_knows_no_parameters_draws_nothing():
     """It takes the negative number of lobes for none."""
     assert stream(strands())[0, 0] == -len(strands().lobes)

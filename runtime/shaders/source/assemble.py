@@ -87,7 +87,7 @@ def _statements(text: str) -> str:
         return f"{m[1]}select({m[4]}, {m[3]}, {m[2]});"
 
     text = text.replace("HAIRLUT_PRECISE ", "")
-    text = re.sub(r"for \(int (\w+) = 0; (.*?); \+\+\1\)", r"for (var \1 = 0; \2; \1++)", text)
+    text = re.sub(r"for \(int (\w+) = (\d); (.*?); \+\+\1\)", r"for (var \1 = \2; \3; \1++)", text)
     text = re.sub(r"^( +)(?!return\b)([A-Za-z_]\w*) (\w+)(?: = ([^;]*))?;", declared, text, flags=re.M)
     text = re.sub(r"((?: = | \+= |return ))([^;?]*?)\s+\? ([^;?:]*) : ([^;?:]*);", chosen, text)
     return re.sub(r"\b(int|float)\(", lambda m: f"{_type(m[1])}(", text)

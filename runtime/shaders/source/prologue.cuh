@@ -18,6 +18,8 @@
 
 #ifdef __CUDACC__
 #define HAIRLUT_FN __host__ __device__ inline
+#elif defined(__GNUC__)
+#define HAIRLUT_FN inline __attribute__((always_inline)) /* as on a GPU: structures are passed by value */
 #else
 #define HAIRLUT_FN inline
 #endif
@@ -49,6 +51,7 @@ struct hairlut_float4 {
 
 constexpr int hairlut_max_lobes = HAIRLUT_LOBE_LIMIT;
 constexpr int hairlut_max_parameters = HAIRLUT_PARAMETER_LIMIT;
+constexpr int hairlut_parameter_slots = HAIRLUT_PARAMETER_LIMIT > 0 ? HAIRLUT_PARAMETER_LIMIT : 1;
 
 HAIRLUT_FN float abs(float x)
 {

@@ -38,3 +38,4 @@ precision highp int;
 
 HAIRLUT_CONST int hairlut_max_lobes = HAIRLUT_LOBE_LIMIT;
 HAIRLUT_CONST int hairlut_max_parameters = HAIRLUT_PARAMETER_LIMIT;
+HAIRLUT_CONST int hairlut_parameter_slots = HAIRLUT_PARAMETER_LIMIT > 0 ? HAIRLUT_PARAMETER_LIMIT : 1;

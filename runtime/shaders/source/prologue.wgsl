@@ -18,6 +18,7 @@
 
 const hairlut_max_lobes: i32 = 16;
 const hairlut_max_parameters: i32 = 8;
+const hairlut_parameter_slots: i32 = max(hairlut_max_parameters, 1);
 
 fn hairlut_bits(x: f32) -> u32 {
     return bitcast<u32>(x);

@@ -84,6 +84,11 @@ void add_model(const std::string &name, const hairlut_model &model)
         for (const std::string &lobe : lobes)
             add_all(name, bench::lobe_calls(model, lobe, *kernels), how);
     }
+    if (hairlut_parameter_count(&model))
+        for (const size_t run : {1, 64}) {
+            add_all(name, bench::strand_calls(model, run), "one");
+            add_all(name, bench::strand_array_calls(model, run), "arrays");
+        }
     for (int threads = 1; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2)
         for (const auto &[call, function] : bench::hair_calls(model, *hairlut_batch_widest()))
             add_threads(name + "/" + call + "/hairlut/threads", function, threads);

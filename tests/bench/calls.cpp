@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calls.h"
 
+#include <memory>
+
+#include "inputs.h"
+
 namespace bench {
 namespace {
 
@@ -42,7 +46,97 @@ void density_of_arrays(const hairlut_model &model, const hairlut_batch &kernels,
                      all.pdf_light);
 }
 
+// Parameters of `count` samples, in the order of the one-direction calls and in that of arrays
+struct Strands {
+    size_t parameters;
+    Floats by_sample, by_parameter;
+
+    const float *of(size_t i) const { return &by_sample[i * parameters]; }
+};
+
+std::shared_ptr<const Strands> random_strands(const hairlut_model &model, size_t run)
+{
+    const auto made = std::make_shared<Strands>();
+    made->parameters = static_cast<size_t>(hairlut_parameter_count(&model));
+    made->by_sample.resize(count * made->parameters);
+    made->by_parameter.resize(count * made->parameters);
+    std::mt19937 random(3);
+    for (size_t i = 0; i < count; ++i)
+        for (size_t p = 0; p < made->parameters; ++p) {
+            float &value = made->by_sample[i * made->parameters + p];
+            float least, most;
+            hairlut_parameter_range(&model, static_cast<int>(p), &least, &most, nullptr);
+            value = i % run ? made->of(i - 1)[p] : std::uniform_real_distribution<float>(least, most)(random);
+            made->by_parameter[p * count + i] = value;
+        }
+    return made;
+}
+
+void sample_strand(const hairlut_model &model, const float *strand, const rival_arrays &all, size_t i)
+{
+    put(all, i,
+        hairlut_sample_strand(&model, strand, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i], all.u_lobe[i],
+                              all.u_theta[i], all.u_phi[i]));
+}
+
+void density_of_strand(const hairlut_model &model, const float *strand, const rival_arrays &all, size_t i)
+{
+    all.pdf_light[i] = hairlut_pdf_strand(&model, strand, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i],
+                                          all.theta_light[i], all.phi_light[i]);
+}
+
+void sample_strands(const hairlut_model &model, const Strands &strands, const rival_arrays &all)
+{
+    hairlut_sample_strand_n(&model, all.n, strands.by_parameter.data(), nullptr, all.theta_r, all.phi_r, all.offset,
+                            all.u_lobe, all.u_theta, all.u_phi, outputs(all));
+}
+
+void density_of_strands(const hairlut_model &model, const Strands &strands, const rival_arrays &all)
+{
+    hairlut_pdf_strand_n(&model, all.n, strands.by_parameter.data(), nullptr, all.theta_r, all.phi_r, all.offset,
+                         all.theta_light, all.phi_light, all.pdf_light);
+}
+
+std::string of_run(const char *call, size_t run)
+{
+    return run == 1 ? call : std::string(call) + "_" + std::to_string(run);
+}
+
 } // namespace
+
+Calls strand_calls(const hairlut_model &model, size_t run)
+{
+    const auto strands = random_strands(model, run);
+    return {{of_run("sample_strand", run),
+             [&model, strands](const rival_arrays &all) {
+                 for (size_t i = 0; i < all.n; ++i)
+                     sample_strand(model, strands->of(i), all, i);
+             }},
+            {of_run("pdf_strand", run),
+             [&model, strands](const rival_arrays &all) {
+                 for (size_t i = 0; i < all.n; ++i)
+                     density_of_strand(model, strands->of(i), all, i);
+             }},
+            {of_run("vertex_strand", run), [&model, strands](const rival_arrays &all) {
+                 for (size_t i = 0; i < all.n; ++i) {
+                     sample_strand(model, strands->of(i), all, i);
+                     density_of_strand(model, strands->of(i), all, i);
+                 }
+             }}};
+}
+
+Calls strand_array_calls(const hairlut_model &model, size_t run)
+{
+    const auto strands = random_strands(model, run);
+    return {{of_run("sample_strand", run),
+             [&model, strands](const rival_arrays &all) { sample_strands(model, *strands, all); }},
+            {of_run("pdf_strand", run),
+             [&model, strands](const rival_arrays &all) { density_of_strands(model, *strands, all); }},
+            {of_run("vertex_strand", run), [&model, strands](const rival_arrays &all) {
+                 sample_strands(model, *strands, all);
+                 density_of_strands(model, *strands, all);
+             }}};
+}
 
 Calls hair_calls(const hairlut_model &model)
 {

@@ -27,4 +27,9 @@ Calls hair_calls(const hairlut_model &model, const hairlut_batch &kernels);
 Calls lobe_calls(const hairlut_model &model, const std::string &name);
 Calls lobe_calls(const hairlut_model &model, const std::string &name, const hairlut_batch &kernels);
 
+// sample_strand, pdf_strand and vertex_strand of a model over parameters: random ones in their ranges, the same for `run` samples
+// in succession, as where a strand is hit several times. Runs longer than 1 stand in the names: vertex_strand_64.
+Calls strand_calls(const hairlut_model &model, size_t run);
+Calls strand_array_calls(const hairlut_model &model, size_t run);
+
 } // namespace bench

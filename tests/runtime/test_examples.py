@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The examples compile and show what they say."""
 
+import dataclasses
 import re
 
 import pytest
+from runtime import strands
 from runtime.c_library import MODELS, ROOT, RUNTIME, build, run
+
+from hairlut import exr
 
 
 def test_quickstart_prints_one_direction_and_its_density():
@@ -33,3 +37,24 @@ def test_samples_from_files_are_the_compiled_in_ones():
 def test_a_missing_directory_is_an_error_with_its_name():
     with pytest.raises(AssertionError, match=r"no/such/mixture.exr: cannot be opened"):
         run(build() / "print_samples", "no/such")
+
+
+@pytest.mark.usefixtures("loader")
+def test_strand_draws_with_each_roughness(tmp_path):
+    hair = dataclasses.replace(strands.baked(), name="brown")  # as its tables say
+    exr.write_model(tmp_path, hair)
+    lines = run(build() / "strand", tmp_path).stdout.splitlines()
+    shown = [list(map(float, re.findall(r"-?\d+\.\d+", line))) for line in lines]
+    (beta_m,) = (p for p in hair.parameters if p.name == "beta_m")
+    steps = [beta_m.least + k / 4 * (beta_m.most - beta_m.least) for k in range(5)]
+    assert [row[0] for row in shown] == pytest.approx(steps, abs=1e-3)
+    assert len({row[1] for row in shown}) == 5
+    for value, theta_i, pdf in shown:
+        sampled = 1e-4 + hair.lobes[0].theta.domain[1]
+        assert abs(theta_i) < sampled and pdf > 0 and value > 0
+
+
+@pytest.mark.usefixtures("loader")
+def test_strand_refuses_a_missing_directory():
+    with pytest.raises(AssertionError, match="no/such/mixture.exr: cannot be opened"):
+        run(build() / "strand", "no/such")

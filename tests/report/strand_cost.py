@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What parameters cost a vertex: Chiang's hair over three parameters, beside the same model at fixed ones.
 
-PYTHONPATH=tests .venv/bin/python -m report.strand_cost [--model DIR]           three minutes with the fit
+PYTHONPATH=tests .venv/bin/python -m report.strand_cost [--model DIR]
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import tempfile
 from pathlib import Path
 
 from bench import run, timing
+
+from hairlut import exr
 from report.markdown import table
 from report.places import ROOT
 
@@ -31,7 +33,8 @@ HOW = {"one": "one at a time", "arrays": "over arrays"}
 
 TEXT = """# What parameters cost
 
-A call of a model of `hairlut fit precompute/examples/chiang_parameters.py`, with parameters, beside one of the same model at its standard parameters (`hairlut export --to exr`), which has none left. Parameters
+A call of a model of `hairlut fit precompute/examples/chiang_parameters.py`, with parameters, beside one of
+the same model at its standard parameters (`hairlut export --at`), which has none left. Parameters
 are random in their ranges: other ones for each sample, or the same for 64 samples in succession, as where a
 strand is hit several times. A vertex is one sample, with its densities, and the density of another direction.
 The least of {repetitions} repeats in one run and in random order, in ns a sample, on one thread of {place};
@@ -53,7 +56,8 @@ def measured(model: Path | None) -> timing.Times:
             run.run(run.tool("hairlut"), "fit", EXAMPLE, "--out", work)
             model = work / EXAMPLE.stem
         shutil.copytree(model, luts / "strands")
-        run.run(run.tool("hairlut"), "export", luts / "strands", "--to", "exr", "--out", work / "at")
+        at = [f"--at={p.name}={p.standard!r}" for p in exr.read_model(model).parameters]
+        run.run(run.tool("hairlut"), "export", luts / "strands", *at, "--to", "exr", "--out", work / "at")
         shutil.move(next((work / "at").iterdir()), luts / "fixed")
         return timing.measure(run.build(), luts, NAMES, Path(folder) / "results.json", REPETITIONS)
 

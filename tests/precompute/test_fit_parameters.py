@@ -98,6 +98,11 @@ GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
         ("PARAMETERS = {'a': 1}\n" + GOOD, "PARAMETERS has 'a': 1: expected"),
         ("PARAMETERS = {'a': (1,)}\n" + GOOD, "PARAMETERS has 'a': (1,): expected"),
         ("PARAMETERS = {'a': ('x', 'y')}\n" + GOOD, "PARAMETERS has 'a': ('x', 'y'): expected"),
+        ("PARAMETERS = {'a': ('0', '1')}\n" + GOOD, "PARAMETERS has 'a': ('0', '1'): expected"),
+        ("PARAMETERS = {'a': '01'}\n" + GOOD, "PARAMETERS has 'a': '01': expected"),
+        ("PARAMETERS = {'a': (False, True)}\n" + GOOD, "PARAMETERS has 'a': (False, True): expected"),
+        ("PARAMETERS = {'a': (0, 10**400)}\n" + GOOD, "PARAMETERS has 'a': (0, 1000"),
+        ("parameters = {'a': (0, 1)}\n" + GOOD, "defines parameters: name it PARAMETERS"),
         ("PARAMETERS = {'a': (2, 1)}\n" + GOOD, "parameter a: is 2 1 1.5"),
         ("PARAMETERS = {'a': (0, 1, 2)}\n" + GOOD, "parameter a: is 0 1 2"),
         ("PARAMETERS = {'a': (0, float('nan'))}\n" + GOOD, "parameter a: is 0 nan"),
@@ -116,6 +121,10 @@ GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
         (
             "PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, theta_i, phi, a):\n    return 0.5 - a + 0 * phi\n",
             "bsdf is -0.5 at theta_r = ",
+        ),
+        (
+            "PARAMETERS = {'a': (0, 1)}\n" + GOOD.replace("1.0 + a", "max(a - 0.3, 0) * (2 + 0 * phi)"),
+            "f is 0 wherever it was evaluated at a = 0: narrow the range",
         ),
     ],
 )

@@ -61,6 +61,9 @@ def load(path: Path) -> Bsdf:
     function = getattr(module, "bsdf", None)
     if not callable(function):
         raise HairlutError(f"{path}: has no bsdf: {EXPECTED}")
+    for name in vars(module):
+        if name != "PARAMETERS" and name.upper() == "PARAMETERS":
+            raise HairlutError(f"{path}: defines {name}: name it PARAMETERS, {EXPECTED_PARAMETERS}")
     parameters = _parameters(path, getattr(module, "PARAMETERS", {}))
     count = _arguments(path, function, [parameter.name for parameter in parameters])
     return Bsdf(_Bsdf(path, guarded(function, path), count), count == 4, parameters)
@@ -96,8 +99,8 @@ def _parameters(path: Path, given: object) -> tuple[Parameter, ...]:
     found = []
     for name, values in given.items():
         try:
-            numbers = [float(x) for x in values]
-        except (TypeError, ValueError):
+            numbers = [] if isinstance(values, str) else [_number(x) for x in values]
+        except (TypeError, ValueError, OverflowError):
             numbers = []
         if not isinstance(name, str) or len(numbers) not in (2, 3):
             raise HairlutError(f"{path}: PARAMETERS has {name!r}: {values!r}: {EXPECTED_PARAMETERS}")
@@ -111,6 +114,13 @@ def _parameters(path: Path, given: object) -> tuple[Parameter, ...]:
     except HairlutError as error:
         raise HairlutError(f"{path}: PARAMETERS: {error}") from None
     return tuple(found)
+
+
+def _number(value: object) -> float:
+    """A number as it is written in a file: no text that float() would read, no truth value."""
+    if isinstance(value, str | bytes | bool | np.bool_):
+        raise TypeError
+    return float(value)
 
 
 def _arguments(path: Path, function: Callable, names: list[str]) -> int:

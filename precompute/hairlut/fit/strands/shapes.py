@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...errors import HairlutError
 from ...lobes import Array
 from ...mixture import wrap
 from .. import cells
@@ -235,11 +236,20 @@ def _blocks(
     viewers = theta_r[np.unique([0, len(theta_r) // 2, len(theta_r) - 1])]
     m = max(cells.phi_count(box.density_at(place), viewers, offset[:-1][::2]) for place in places)
     m = min(m, box.effort.most_phi)
-    return [
-        Block(mass, j, 0 if tied_rows else j)
-        for place in places
-        for j, mass in enumerate(cells.of_density(box.density_at(place), theta_r, offset, edges, m).mass)
-    ]
+    each = [cells.of_density(box.density_at(place), theta_r, offset, edges, m) for place in places]
+    for place, data in zip(places, each, strict=True):
+        _check_light(box, place, data)
+    return [Block(mass, j, 0 if tied_rows else j) for data in each for j, mass in enumerate(data.mass)]
+
+
+def _check_light(box: Box, place: Place, data: cells.Cells) -> None:
+    """Refuses a place without light: there is nothing to draw, and no lobe to follow to the next place."""
+    if not data.light.any():
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in box.named(place).items())
+        raise HairlutError(
+            f"f is 0 wherever it was evaluated at {values}: narrow the range of a parameter in PARAMETERS to "
+            "where f has light"
+        )
 
 
 def around(phi: Array, m: int) -> Array:

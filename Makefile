@@ -100,6 +100,7 @@ fits: build
 	$(REPORT).weights
 	$(REPORT).fits
 	$(REPORT).parameters
+	$(REPORT).strand_cost
 
 plugin: setup
 	@$(BIN)/python runtime/mitsuba/plugin.py

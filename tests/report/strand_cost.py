@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What parameters cost a vertex: Chiang's hair over three parameters, beside the same model at fixed ones.
+Writes pages/strand_cost.md.
 
 PYTHONPATH=tests .venv/bin/python -m report.strand_cost [--model DIR]
 """
@@ -16,7 +17,7 @@ from bench import run, timing
 
 from hairlut import exr
 from report.markdown import table
-from report.places import ROOT
+from report.places import PAGES, ROOT
 
 EXAMPLE = ROOT / "precompute" / "examples" / "chiang_parameters.py"
 TARGET = 1.5
@@ -37,7 +38,8 @@ A call of a model of `hairlut fit precompute/examples/chiang_parameters.py`, wit
 the same model at its standard parameters (`hairlut export --at`), which has none left. Parameters
 are random in their ranges: other ones for each sample, or the same for 64 samples in succession, as where a
 strand is hit several times. A vertex is one sample, with its densities, and the density of another direction.
-The least of {repetitions} repeats in one run and in random order, in ns a sample, on one thread of {place};
+The least of {repetitions} repeats in one run and in random order, in ns a sample, on one thread of
+{place};
 in the median a repeat took {interference:.0%} longer. Inputs are those of the speed page.
 
     PYTHONPATH=tests .venv/bin/python -m report.strand_cost
@@ -92,7 +94,7 @@ def main() -> int:
         "--model", type=Path, metavar="DIR", help="a model over parameters; default: fits one"
     )
     args = parser.parse_args()
-    print(page(measured(args.model)))
+    (PAGES / "strand_cost.md").write_text(page(measured(args.model)))
     return 0
 
 

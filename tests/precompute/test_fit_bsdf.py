@@ -234,6 +234,10 @@ def bsdf(theta_r, theta_i, phi):
         ("def bsdf(theta_r, theta_i, phi):\n    return input()\n", "hair.py:2"),
         ("def bsdf(theta_r, theta_i, phi):\n    return 1 / 0\n", "hair.py:2: ZeroDivisionError"),
         ("def bsdf(theta_r, theta_i, phi):\n    return 0.0 * theta_i\n", "hair.py: f is 0 wherever it was"),
+        (
+            "def bsdf(theta_r, theta_i, phi):\n    return (theta_r < 0.5) + 0 * phi\n",
+            "hair.py: f is 0 in all directions tried at theta_r = ",
+        ),
         ("import math\ndef bsdf(theta_r, theta_i, phi):\n    return math.cos(phi)\n", "instead of math's"),
         ("def bsdf(theta_r, theta_i, phi):\n    return 1.0 if phi > 1 else 2.0\n", "use np.where, not if"),
     ],

@@ -124,7 +124,11 @@ GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
         ),
         (
             "PARAMETERS = {'a': (0, 1)}\n" + GOOD.replace("1.0 + a", "max(a - 0.3, 0) * (2 + 0 * phi)"),
-            "f is 0 wherever it was evaluated at a = 0: narrow the range",
+            "f is 0 wherever it was evaluated, a = 0: expected some light",
+        ),
+        (
+            "PARAMETERS = {'a': (0, 1)}\n" + GOOD.replace("1.0 + a", "(theta_r < a) + 0 * phi"),
+            "f is 0 in all directions tried at theta_r = ",
         ),
     ],
 )

@@ -42,6 +42,15 @@ class Cells:
     mass: Array
     light: Array
 
+    def dark(self) -> str | None:
+        """Where f was 0 in all directions that were evaluated, in words: there is nothing to draw there."""
+        lit = self.light.any(axis=1)
+        if lit.all():
+            return None
+        if not lit.any():
+            return "wherever it was evaluated"
+        return f"in all directions tried at theta_r = {np.degrees(self.theta_r[np.argmin(lit)]):.4g} deg"
+
 
 def of_density(density: Density, theta_r: Array, offset: Array, theta_edges: Array, count: int) -> Cells:
     """The cells of a density; count: cells of the azimuth."""

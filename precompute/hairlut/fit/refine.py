@@ -204,8 +204,10 @@ def _cells(hair: Hair, theta_r: Array, angle: Array, axes: Axes, effort: Effort)
     some = offset[np.unique([len(offset) // 2, 0, max(len(offset) - 2, 0)][: effort.edge_offsets])]
     edges = cells.theta_edges(hair.density, theta_r, some, axes.theta_i, effort.edge_azimuths)
     data = cells.of_density(hair.density, theta_r, offset, edges, axes.phi)
-    if not data.light.any():
-        raise HairlutError("f is 0 wherever it was evaluated: no light, or only between the directions tried")
+    if dark := data.dark():
+        raise HairlutError(
+            f"f is 0 {dark}: no light, or only between the directions tried; expected some for each theta_r"
+        )
     return data
 
 

@@ -121,6 +121,7 @@ def at_anchor(
     viewers = theta_r[list(some(rows))]
     m = min(cells.phi_count(box.density_at(place), viewers, np.sin(angle)), box.effort.most_phi)
     data = cells.of_density(box.density_at(place), theta_r, np.sin(angle), edges, m)
+    _check_light(box, place, data)
     fitted = fit_rows(data, angle, count, turning, report)
     blocks = [Block(mass, j, j) for j, mass in enumerate(data.mass)]
     return Shapes((place,), theta_r, angle, edges, blocks, fitted, False)
@@ -244,11 +245,11 @@ def _blocks(
 
 def _check_light(box: Box, place: Place, data: cells.Cells) -> None:
     """Refuses a place without light: there is nothing to draw, and no lobe to follow to the next place."""
-    if not data.light.any():
+    if dark := data.dark():
         values = ", ".join(f"{name} = {value:.6g}" for name, value in box.named(place).items())
         raise HairlutError(
-            f"f is 0 wherever it was evaluated at {values}: narrow the range of a parameter in PARAMETERS to "
-            "where f has light"
+            f"f is 0 {dark}, {values}: expected some light for each theta_r: narrow the range of a parameter "
+            "in PARAMETERS, or let f be above 0 there"
         )
 
 

@@ -128,14 +128,14 @@ Calls strand_calls(const hairlut_model &model, size_t run)
 Calls strand_array_calls(const hairlut_model &model, size_t run)
 {
     const auto strands = random_strands(model, run);
-    return {{of_run("sample_strand", run),
-             [&model, strands](const rival_arrays &all) { sample_strands(model, *strands, all); }},
-            {of_run("pdf_strand", run),
-             [&model, strands](const rival_arrays &all) { density_of_strands(model, *strands, all); }},
-            {of_run("vertex_strand", run), [&model, strands](const rival_arrays &all) {
-                 sample_strands(model, *strands, all);
-                 density_of_strands(model, *strands, all);
-             }}};
+    return {
+        {of_run("sample_strand", run), [&model, strands](const rival_arrays &all) { sample_strands(model, *strands, all); }},
+        {of_run("pdf_strand", run),
+         [&model, strands](const rival_arrays &all) { density_of_strands(model, *strands, all); }},
+        {of_run("vertex_strand", run), [&model, strands](const rival_arrays &all) {
+             sample_strands(model, *strands, all);
+             density_of_strands(model, *strands, all);
+         }}};
 }
 
 Calls hair_calls(const hairlut_model &model)

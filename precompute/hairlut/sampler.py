@@ -210,6 +210,8 @@ class Model:
             if name not in self.parameters:
                 known = ", ".join(self.parameters) or "no parameters"
                 raise HairlutError(f"parameter {name!r}: model {self.name} has {known}")
+            if np.asarray(given[name]).dtype.kind not in "fiub":
+                raise HairlutError(f"parameter {name!r}: is {given[name]!r}, expected real numbers")
         return [_float32(given.get(p.name, p.standard)) for p in self._parameters] if given else []
 
     def _shares(self, shares: ArrayLike | None, shape: tuple[int, ...]) -> Floats | None:

@@ -119,6 +119,9 @@ def test_what_a_model_says_of_its_parameters(hair):
     assert hair.parameters == {"beta_m": (0.1, 0.9, 0.3), "absorption": (0.0, 5.0, 0.5), "tilt": (-4, 4, -1)}
     with pytest.raises(HairlutError, match="parameter 'beta': model parametric has beta_m, absorption, tilt"):
         hair.pdf(0.0, 0.0, 0.0, 0.0, beta=0.3)
+    for wrong in (None, "0.3", 1j):
+        with pytest.raises(HairlutError, match=r"parameter 'beta_m': is .*, expected real numbers"):
+            hair.pdf(0.0, 0.0, 0.0, 0.0, beta_m=wrong)
     with pytest.raises(HairlutError, match="parameter 'self'"):
         hair.sample(0.0, 0.0, (0.1, 0.2, 0.3), self=0.3)
     assert hairlut.builtin("brown").parameters == {}

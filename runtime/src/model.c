@@ -209,8 +209,8 @@ static double bytes_of(const hairlut_model_desc *desc, const table_list *list)
 {
     double floats = (double)hairlut_mixture_floats(desc->mixture, desc->lobe_count);
     if (desc->parameter_count > 0)
-        floats += (double)sizeof(hairlut_strands) / sizeof(float) + (double)hairlut_strands_floats(desc) + HAIRLUT_LINE +
-                  (double)hairlut_fours_floats(desc->mixture, desc->lobe_count);
+        floats += (double)sizeof(hairlut_strands) / sizeof(float) + (double)hairlut_strands_floats(desc) +
+                  (double)HAIRLUT_LINE + (double)hairlut_fours_floats(desc->mixture, desc->lobe_count);
     for (int k = 0; k < list->count; ++k)
         floats += (double)hairlut_table_floats(&list->tables[k]) * (double)tables_of(&list->tables[k]);
     return (double)(sizeof(hairlut_model) + (size_t)desc->lobe_count * sizeof(hairlut_lobe) + line) + floats * sizeof(float);

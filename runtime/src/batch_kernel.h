@@ -9,6 +9,7 @@
  *   by_sign(a, n, p)  n where a's sign bit is set, else p
  *   every(m)        whether all lanes are true
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
+ *   as_whole(a)     the integers of the same bits
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k], at[l] a multiple of 4
  *   gather_links(links, at, offset, h)  those of links[at[l]] in lane l

@@ -26,36 +26,38 @@ typedef struct mixture_block {
     int every[HAIRLUT_MAX_LOBES]; /* whether all have */
 } mixture_block;
 
-enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, more are halved for single samples */
+enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, more are searched for single samples */
 
-/* hairlut_mixture_node */
-static inline real find_node(const float *nodes, int count, real x, real *t)
+/* hairlut_nodes_place */
+static inline real find_node(const hairlut_nodes *nodes, real x, real *t)
 {
     float at[LANES], place[LANES];
     real j = all(0.0f);
     *t = all(0.0f);
-    if (count == 1)
+    if (nodes->count == 1)
         return j;
-    if (count <= COUNTED_NODES) {
-        for (int k = 1; k < count - 1; ++k)
-            j = add(j, choose(at_least(x, all(nodes[2 * k])), all(1.0f), all(0.0f)));
+    if (nodes->count <= COUNTED_NODES) {
+        for (int k = 0; k + 2 < nodes->count; ++k)
+            j = add(j, choose(at_least(x, all(nodes->inner[k])), all(1.0f), all(0.0f)));
     } else {
         store(at, x);
         for (int l = 0; l < LANES; ++l)
-            place[l] = (float)hairlut_mixture_node(nodes, count, at[l]).j;
+            place[l] = (float)hairlut_nodes_place(nodes, at[l]).j;
         j = load(place);
     }
     int offset[LANES];
     real node[4];
     istore(offset, truncated(add(j, j)));
-    gather4(nodes, offset, node);
+    gather4(nodes->pairs, offset, node);
     *t = clamp(mul(sub(x, node[0]), node[1]), all(0.0f), all(1.0f));
     return j;
 }
 
-/* The four corners around: offsets of the first lobe's floats at each, and the weights between. */
+enum { FOUR = sizeof(hairlut_four) / sizeof(float) };
+
+/* The four corners around, as node[4] of mixture.h: offsets in floats, and the weights between. */
 typedef struct grid_corners {
-    int low[LANES], low_above[LANES], high[LANES], high_above[LANES];
+    int at[4][LANES];
     real t, s;
 } grid_corners;
 
@@ -63,32 +65,54 @@ typedef struct grid_corners {
 static inline void find_corners(const hairlut_model *model, real theta_r, real arc, grid_corners *c)
 {
     const hairlut_mixture *m = &model->mixture;
-    const int node = HAIRLUT_CORNER * model->lobe_count, above = m->rows > 1 ? node * m->columns : 0;
-    const int beside = m->columns > 1 ? node : 0;
-    const real j = find_node(m->theta_r, m->rows, theta_r, &c->t), o = find_node(m->arc, m->columns, arc, &c->s);
+    const int above = FOUR * m->above, beside = FOUR * m->beside;
+    const real j = find_node(&m->theta_r, theta_r, &c->t), o = find_node(&m->arc, arc, &c->s);
     const whole low = truncated(add(mul(j, all((float)above)), mul(o, all((float)beside))));
-    istore(c->low, low);
-    istore(c->low_above, iadd(low, iall(above)));
-    istore(c->high, iadd(low, iall(beside)));
-    istore(c->high_above, iadd(low, iall(above + beside)));
+    istore(c->at[0], low);
+    istore(c->at[1], iadd(low, iall(above)));
+    istore(c->at[2], iadd(low, iall(beside)));
+    istore(c->at[3], iadd(low, iall(above + beside)));
 }
 
-/* hairlut_blend_shares, and hairlut_blend_turns where lobes are turned */
-static inline real blend_corners(const hairlut_mixture *m, const grid_corners *c, int lobe, real *turn)
+/* hairlut_blend_shares */
+static inline real blend_shares(real a, real b, real t)
 {
-    const float *at = m->corners + HAIRLUT_CORNER * lobe;
-    real low[4], low_above[4], high[4], high_above[4];
-    const real t = c->t, s = c->s, t0 = sub(all(1.0f), t), s0 = sub(all(1.0f), s);
-    gather4(at, c->low, low);
-    gather4(at, c->low_above, low_above);
-    gather4(at, c->high, high);
-    gather4(at, c->high_above, high_above);
-    if (m->turned) {
-        const real from = add(low[1], mul(t, low[2])), to = add(high[1], mul(t, high[2]));
-        *turn = wrap_near(add(from, mul(s, wrap_near(sub(to, from), -hairlut_pi))), -hairlut_pi);
+    return add(mul(sub(all(1.0f), t), a), mul(t, b));
+}
+
+/* hairlut_wrap_turns */
+static inline real wrap_turns(real a)
+{
+    const real round = all(hairlut_whole_turns);
+    return sub(a, sub(add(add(a, all(hairlut_turn_ties)), round), round));
+}
+
+/* hairlut_blend_turns */
+static inline real blend_turns(real a, real b, real t)
+{
+    return add(a, mul(t, wrap_turns(sub(b, a))));
+}
+
+/* hairlut_mixture_between for four lobes, whose fours begin at `four`; turns only where lobes are turned */
+static inline void blend_corners(const hairlut_mixture *m, const grid_corners *c, const hairlut_four *four, real share[4],
+                                 real turn[4])
+{
+    real shares[4][4], turns[4][4];
+    for (int n = 0; n < 4; ++n) {
+        gather4(four->share, c->at[n], shares[n]);
+        if (m->turned)
+            gather4((const float *)(const void *)four->turn, c->at[n], turns[n]);
     }
-    const real from = add(mul(t0, low[0]), mul(t, low_above[0])), to = add(mul(t0, high[0]), mul(t, high_above[0]));
-    return add(mul(s0, from), mul(s, to));
+    for (int l = 0; l < 4; ++l)
+        share[l] = blend_shares(blend_shares(shares[0][l], shares[1][l], c->t),
+                                blend_shares(shares[2][l], shares[3][l], c->t), c->s);
+    for (int l = 0; m->turned && l < 4; ++l) {
+        real at[4];
+        for (int n = 0; n < 4; ++n)
+            at[n] = converted(as_whole(turns[n][l]));
+        const real wrapped = wrap_turns(blend_turns(blend_turns(at[0], at[1], c->t), blend_turns(at[2], at[3], c->t), c->s));
+        turn[l] = mul(all(hairlut_turn_radians), wrapped);
+    }
 }
 
 /* hairlut_mixture_given: the shares; returns their sum */
@@ -109,31 +133,22 @@ static inline real take_shares(int count, given_shares given, size_t s, real sha
     return choose(at_least(finite, all(0.0f)), sum, all(0.0f));
 }
 
-/* Whether a model's mixture has a single node. */
-static inline int is_alone(const hairlut_model *model)
-{
-    return model->mixture.rows == 1 && model->mixture.columns == 1;
-}
-
 /* hairlut_mixture_fill of samples s .. s+LANES-1, where that is not constant; the shares and, returned, their sum */
 static inline real mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mixture_block *m,
                           size_t s, real share[HAIRLUT_MAX_LOBES])
 {
     const hairlut_mixture *mixture = &model->mixture;
-    const int count = model->lobe_count, alone = is_alone(model);
+    const int count = model->lobe_count;
     const real h = clamp(offset, all(-1.0f), all(1.0f));
-    real sum = all(0.0f);
+    real sum = all(0.0f), turn[HAIRLUT_MAX_LOBES];
     grid_corners c;
-    if (!alone)
-        find_corners(model, theta_r, arcsine(mixture->mirrored ? magnitude(h) : h), &c);
-    for (int k = 0; k < count; ++k) {
-        const float *corner = mixture->corners + HAIRLUT_CORNER * k;
-        real turn = all(corner[1]);
-        share[k] = alone ? all(corner[0]) : blend_corners(mixture, &c, k, &turn);
+    find_corners(model, theta_r, arcsine(mixture->mirrored ? magnitude(h) : h), &c);
+    for (int q = 0; q < mixture->four_count; ++q)
+        blend_corners(mixture, &c, mixture->fours + q, share + 4 * q, turn + 4 * q);
+    for (int k = 0; k < count; ++k)
         sum = add(sum, share[k]);
-        if (mixture->turned)
-            store(m->turn[k] + s, turn);
-    }
+    for (int k = 0; mixture->turned && k < count; ++k)
+        store(m->turn[k] + s, turn[k]);
     if (given.shares)
         sum = take_shares(count, given, s, share);
     if (mixture->mirrored)

@@ -79,6 +79,10 @@ void hairlut_build_axis(hairlut_axis *axis, const hairlut_table *table, float *m
 void hairlut_blend_axis(const hairlut_axis *axis, float *memory, const hairlut_spacing *nodes,
                         const hairlut_corners *corners);
 
+/* Floats that the nodes of an axis take, and the nodes of such values. Returns the end of what was filled. */
+size_t hairlut_nodes_floats(int count);
+float *hairlut_build_nodes(hairlut_nodes *nodes, const float *values, int count, float *memory);
+
 /* Lays out what strands read, from descriptors that are valid and of a known size. */
 size_t hairlut_strands_floats(const hairlut_model_desc *desc);
 float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_desc *desc, float *memory);
@@ -93,22 +97,14 @@ hairlut_spacing hairlut_space(const hairlut_strands *strands, int number, ptrdif
 hairlut_corners hairlut_only_corner(void);
 hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int grid);
 
-size_t hairlut_fours_floats(const hairlut_mixture_desc *desc, int lobe_count);
-void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *desc, int lobe_count, int grid,
-                         float *memory);
-
 hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lobe_count, char *message);
 size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count);
 
-/* At one point of the parameters: the corners around it, over the nodes of the mixture's axes. */
+/* From one node of the parameters to the next, in fours; 0 where the mixture does not depend on them. */
+ptrdiff_t hairlut_mixture_pitch(const hairlut_mixture_desc *desc, int lobe_count);
+
+/* At all nodes of its axes, and, before them, at the standard values: the corners around these. */
 void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *desc, int lobe_count,
                            const hairlut_spacing *nodes, const hairlut_corners *corners, float *memory);
-
-/* A lobe's share of the sum, and its turn, at node `node` of the parameters, j of theta_r, o of the offset. */
-double hairlut_share_at(const hairlut_mixture_desc *desc, int lobe_count, int k, size_t node, int j, int o);
-double hairlut_turn_at(const hairlut_mixture_desc *desc, int k, size_t node, int j, int o);
-
-/* The arc by which a turn, in rad, differs from 0: [-pi, pi) */
-double hairlut_shorter_arc(double turn);
 
 #endif

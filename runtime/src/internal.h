@@ -4,6 +4,7 @@
 #define HAIRLUT_INTERNAL_H
 
 #include <float.h>
+#include <stdint.h>
 
 #include "hairlut.h"
 #include "platform.h"
@@ -123,30 +124,44 @@ typedef struct hairlut_lobe {
     char name[HAIRLUT_NAME_SIZE];
 } hairlut_lobe;
 
-/* A mixture at one theta_r and offset. Of arrays of lobes, as many are set as the model has. */
+/* A mixture at one theta_r and offset. Of arrays of lobes, as many are set as the model has, rounded up to fours: of lobes that there
+ * are not, the shares are 0. */
 typedef struct hairlut_mix {
     float share[HAIRLUT_MAX_LOBES];  /* in a unit of their own */
     float weight[HAIRLUT_MAX_LOBES]; /* share / sum */
-    float turn[HAIRLUT_MAX_LOBES];   /* [-pi, pi) */
-    float sum;                       /* of the shares; 0 where no density can be given */
-    float side;                      /* -1 where the azimuth is mirrored, else 1 */
+    float turn[HAIRLUT_MAX_LOBES];   /* from -pi to pi */
     int lobes[HAIRLUT_MAX_LOBES];    /* the numbers of those that have a weight */
     int count;                       /* and how many these are */
+    float sum;                       /* of the shares; 0 where no density can be given */
+    float side;                      /* -1 where the azimuth is mirrored, else 1 */
 } hairlut_mix;
 
-/* The grid of a mixture. A node of an axis is two floats: its value, and 1 / (the next one's - its own); 0 at the last. At the
- * grid's node (j, o), lobe k has HAIRLUT_CORNER floats from ((j*columns + o)*lobe_count + k)*HAIRLUT_CORNER on: its share, where
- * those of a node sum to 1; its turn in [-pi, pi); by how much that changes, along the shorter arc, to node (j+1, o); and 0. */
-enum { HAIRLUT_CORNER = 4 };
+/* The nodes of an axis of a mixture or of a parameter, in one array: first all but the first and the last, by which a value is
+ * searched, filled up to eights with HAIRLUT_NO_TEXEL; then for each its value, and 1 / (the next one's - its own), 0 at the last. */
+typedef struct hairlut_nodes {
+    const float *inner, *pairs;
+    int count, eights; /* eights of inner ones */
+    float last;
+} hairlut_nodes;
+
+/* Shares and turns of four lobes at a node of a mixture, side by side; a model of other than four has as many such as it needs.
+ * Shares of a node sum to 1. A turn is in units of 2 pi / 2^32: the difference of two, modulo 2^32, is the shorter arc. */
+typedef struct hairlut_four {
+    float share[4];
+    int32_t turn[4];
+} hairlut_four;
+
+/* The grid of a mixture. Those of node (j, o) are four_count fours from j*above + o*beside on; a node that is the only one of its axis
+ * is its own neighbour: then the distance is 0. */
 typedef struct hairlut_mixture {
-    const float *theta_r; /* the nodes of theta_r */
-    const float *arc;     /* the asin of the nodes of the offset */
-    const float *corners;
-    int rows;     /* nodes of theta_r */
-    int columns;  /* nodes of the offset */
-    int mirrored; /* whether -h mirrors h */
-    int turned;   /* whether any turn is not 0 */
-    int constant; /* whether the mixture is the same everywhere, namely: */
+    const hairlut_four *fours;
+    hairlut_nodes theta_r, arc; /* the second: the asin of the nodes of the offset */
+    int four_count;             /* lobes / 4, rounded up */
+    int above, beside;          /* fours from a node to the next in theta_r, and in the offset */
+    int mirrored;               /* whether -h mirrors h */
+    int turned;                 /* whether any turn is not 0 */
+    int turns_vary;             /* whether turns depend on parameters */
+    int constant;               /* whether the mixture is the same everywhere, namely: */
     hairlut_mix mix;
 } hairlut_mixture;
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Mixtures from memory: what one must fulfil, and the copy of it that is read. */
 #include <math.h>
+#include <string.h>
 
 #include "angle.h"
 #include "build.h"
@@ -106,20 +107,15 @@ hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lo
     return result;
 }
 
-size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count)
-{
-    const size_t rows = (size_t)desc->theta_r_count, columns = (size_t)desc->offset_count;
-    return HAIRLUT_CORNER * rows * columns * (size_t)lobe_count + 2 * rows + 2 * columns;
-}
-
-/* In double: the arc from one turn to another is the shorter one also where floats are too coarse to decide. */
-double hairlut_shorter_arc(double turn)
+/* The arc by which a turn, in rad, differs from 0: [-pi, pi). In double: the arc from one turn to another is the shorter one also where
+ * floats are too coarse to decide. */
+static double shorter_arc(double turn)
 {
     static const double pi = 3.14159265358979323846;
     return turn - 2.0 * pi * floor((turn + pi) / (2.0 * pi));
 }
 
-double hairlut_share_at(const hairlut_mixture_desc *desc, int lobe_count, int k, size_t node, int j, int o)
+static double share_at(const hairlut_mixture_desc *desc, int lobe_count, int k, size_t node, int j, int o)
 {
     double sum = 0.0;
     if (!desc->share)
@@ -129,7 +125,7 @@ double hairlut_share_at(const hairlut_mixture_desc *desc, int lobe_count, int k,
     return (double)desc->share[place(desc, k, node, j, o)] / sum;
 }
 
-double hairlut_turn_at(const hairlut_mixture_desc *desc, int k, size_t node, int j, int o)
+static double turn_at(const hairlut_mixture_desc *desc, int k, size_t node, int j, int o)
 {
     return desc->turn ? (double)desc->turn[place(desc, k, node, j, o)] : 0.0;
 }
@@ -140,66 +136,119 @@ static double blended_share(const hairlut_mixture_desc *desc, int lobe_count, co
 {
     double sum = 0.0;
     for (int c = 0; c < nodes->count; ++c)
-        sum += (double)hairlut_quad_first(corners->weight[c]) *
-               hairlut_share_at(desc, lobe_count, k, (size_t)(corners->node + nodes->corner[c]), j, o);
+        sum += (double)corners->weight[c] * share_at(desc, lobe_count, k, (size_t)(corners->node + nodes->corner[c]), j, o);
     return sum;
 }
 
 static double blended_turn(const hairlut_mixture_desc *desc, const hairlut_spacing *nodes, const hairlut_corners *corners,
                            int k, int j, int o)
 {
-    const double low = hairlut_turn_at(desc, k, (size_t)corners->node, j, o);
+    const double low = turn_at(desc, k, (size_t)corners->node, j, o);
     double turn = low;
     for (int c = 1; c < nodes->count; ++c) {
-        const double other = hairlut_turn_at(desc, k, (size_t)(corners->node + nodes->corner[c]), j, o);
-        turn += (double)hairlut_quad_first(corners->weight[c]) * hairlut_shorter_arc(other - low);
+        const double other = turn_at(desc, k, (size_t)(corners->node + nodes->corner[c]), j, o);
+        turn += (double)corners->weight[c] * shorter_arc(other - low);
     }
     return turn;
 }
 
-static void store_corner(float *stored, const hairlut_mixture_desc *desc, int lobe_count, const hairlut_spacing *nodes,
-                         const hairlut_corners *corners, int k, int j, int o)
+/* A turn in units of 2 pi / 2^32, modulo 2^32 */
+static int32_t fixed_turn(double turn)
 {
-    const int above = j + 1 < desc->theta_r_count ? j + 1 : j;
-    const double turn = blended_turn(desc, nodes, corners, k, j, o), next = blended_turn(desc, nodes, corners, k, above, o);
-    stored[0] = (float)blended_share(desc, lobe_count, nodes, corners, k, j, o);
-    stored[1] = hairlut_wrap((float)hairlut_shorter_arc(turn), -hairlut_pi);
-    stored[2] = (float)hairlut_shorter_arc(next - turn);
-    stored[3] = 0.0f;
+    static const double unit = 683565275.57643158979; /* 2^32 / (2 pi) */
+    const double fixed = floor(shorter_arc(turn) * unit + 0.5);
+    return fixed >= 2147483648.0 ? INT32_MIN : (int32_t)fixed;
 }
 
-static void store_nodes(float *stored, const float *nodes, int count, int is_offset)
+static int fours_of(int lobe_count)
 {
-    for (int k = 0; k < count; ++k) {
-        const float node = nodes ? nodes[k] : 0.0f;
-        stored[2 * k] = is_offset ? hairlut_asin(node) : node;
-        stored[2 * k + 1] = 0.0f;
-        if (k > 0)
-            stored[2 * k - 1] = 1.0f / (stored[2 * k] - stored[2 * k - 2]);
+    return (lobe_count + 3) / 4;
+}
+
+/* The fours of a node of theta_r and the offset, at a place between the nodes of the parameters. Returns whether a turn is not 0. */
+static int store_fours(hairlut_four *four, const hairlut_mixture_desc *desc, int lobe_count, const hairlut_spacing *nodes,
+                       const hairlut_corners *corners, int j, int o)
+{
+    int turned = 0;
+    memset(four, 0, (size_t)fours_of(lobe_count) * sizeof *four);
+    for (int k = 0; k < lobe_count; ++k) {
+        four[k / 4].share[k % 4] = (float)blended_share(desc, lobe_count, nodes, corners, k, j, o);
+        four[k / 4].turn[k % 4] = fixed_turn(blended_turn(desc, nodes, corners, k, j, o));
+        turned |= four[k / 4].turn[k % 4] != 0;
     }
+    return turned;
+}
+
+/* The whole grid. Returns its end. */
+static hairlut_four *store_grid(hairlut_four *four, const hairlut_mixture_desc *desc, int lobe_count,
+                                const hairlut_spacing *nodes, const hairlut_corners *corners, int *turned)
+{
+    for (int j = 0; j < desc->theta_r_count; ++j)
+        for (int o = 0; o < desc->offset_count; ++o, four += fours_of(lobe_count))
+            *turned |= store_fours(four, desc, lobe_count, nodes, corners, j, o);
+    return four;
+}
+
+static size_t grid_fours(const hairlut_mixture_desc *desc, int lobe_count)
+{
+    return (size_t)desc->theta_r_count * (size_t)desc->offset_count * (size_t)fours_of(lobe_count);
+}
+
+static size_t grids_of(const hairlut_mixture_desc *desc)
+{
+    return desc->axis_count > 0 ? 1 + hairlut_node_count(desc->axes, desc->axis_count) : 1;
+}
+
+ptrdiff_t hairlut_mixture_pitch(const hairlut_mixture_desc *desc, int lobe_count)
+{
+    return desc->axis_count > 0 ? (ptrdiff_t)grid_fours(desc, lobe_count) : 0;
+}
+
+size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count)
+{
+    return grids_of(desc) * grid_fours(desc, lobe_count) * sizeof(hairlut_four) / sizeof(float) +
+           hairlut_nodes_floats(desc->theta_r_count) + hairlut_nodes_floats(desc->offset_count);
+}
+
+static int same_turns(const hairlut_four *a, const hairlut_four *b, size_t count)
+{
+    size_t k = 0;
+    while (k < count && memcmp(a[k].turn, b[k].turn, sizeof a->turn) == 0)
+        ++k;
+    return k == count;
+}
+
+/* The grid of the standard values, then those of the nodes of the parameters. Returns the end of the last. */
+static hairlut_four *build_grids(hairlut_mixture *mixture, const hairlut_mixture_desc *desc, int lobe_count,
+                                 const hairlut_spacing *nodes, const hairlut_corners *standard, hairlut_four *first)
+{
+    static const hairlut_spacing alone = {0, 1, 0, {0}};
+    const size_t fours = grid_fours(desc, lobe_count);
+    hairlut_corners node = hairlut_only_corner();
+    hairlut_four *next = store_grid(first, desc, lobe_count, nodes, standard, &mixture->turned);
+    for (size_t p = 1; p < grids_of(desc); ++p) {
+        node.node = (int)p - 1;
+        next = store_grid(next, desc, lobe_count, &alone, &node, &mixture->turned);
+        mixture->turns_vary |= !same_turns(first + fours, next - fours, fours);
+    }
+    return next;
 }
 
 void hairlut_build_mixture(hairlut_mixture *mixture, const hairlut_mixture_desc *d, int lobe_count,
                            const hairlut_spacing *nodes, const hairlut_corners *corners, float *memory)
 {
-    float *corner = memory,
-          *theta_r = memory + hairlut_mixture_floats(d, lobe_count) - 2 * (d->theta_r_count + d->offset_count);
-    float *arc = theta_r + 2 * d->theta_r_count;
-    mixture->corners = corner;
-    mixture->theta_r = theta_r;
-    mixture->arc = arc;
-    mixture->rows = d->theta_r_count;
-    mixture->columns = d->offset_count;
+    static const float zero[1];
+    float arcs[MAX_NODES] = {0.0f};
+    mixture->fours = (hairlut_four *)memory;
+    mixture->four_count = fours_of(lobe_count);
+    mixture->beside = d->offset_count > 1 ? mixture->four_count : 0;
+    mixture->above = d->theta_r_count > 1 ? mixture->four_count * d->offset_count : 0;
     mixture->mirrored = d->mirrored;
-    mixture->turned = 0;
-    store_nodes(theta_r, d->theta_r, d->theta_r_count, 0);
-    store_nodes(arc, d->offset, d->offset_count, 1);
-    for (int j = 0; j < d->theta_r_count; ++j)
-        for (int o = 0; o < d->offset_count; ++o, corner += HAIRLUT_CORNER * lobe_count) {
-            for (int k = 0; k < lobe_count; ++k) {
-                store_corner(corner + HAIRLUT_CORNER * k, d, lobe_count, nodes, corners, k, j, o);
-                mixture->turned |= corner[HAIRLUT_CORNER * k + 1] != 0.0f;
-            }
-        }
+    mixture->turned = mixture->turns_vary = 0;
     mixture->constant = d->theta_r_count == 1 && d->offset_count == 1 && !d->mirrored;
+    memory = (float *)build_grids(mixture, d, lobe_count, nodes, corners, (hairlut_four *)memory);
+    for (int k = 0; d->offset && k < d->offset_count; ++k)
+        arcs[k] = hairlut_asin(d->offset[k]);
+    memory = hairlut_build_nodes(&mixture->theta_r, d->theta_r ? d->theta_r : zero, d->theta_r_count, memory);
+    hairlut_build_nodes(&mixture->arc, arcs, d->offset_count, memory);
 }

@@ -1,30 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The mixture at one theta_r and offset: each lobe's weight and turn (luts/FORMAT.md, "Mixture").
+/* The mixture at one theta_r and offset: each lobe's weight and turn (luts/FORMAT.md, "Mixture"), four lobes at once.
  *
- * Shares are bilinear in theta_r and asin(offset). A turn is blended along theta_r at both offsets, then between these, each
- * time along the shorter arc: blend(a, b, t) = a + t wrap(b - a), with wrap to [-pi, pi). */
+ * Over parameters, shares and turns are first blended over the corners around the strand: turns as t0 + sum w_i wrap(t_i - t0), t0
+ * that of the first corner. Then shares are bilinear in theta_r and asin(offset). A turn is blended along theta_r at both offsets,
+ * then between these, each time along the shorter arc: blend(a, b, t) = a + t wrap(b - a), with wrap to [-pi, pi). */
 #ifndef HAIRLUT_MIXTURE_H
 #define HAIRLUT_MIXTURE_H
 
 #include "angle.h"
-#include "axis.h"
+#include "corners.h"
+#include "turns.h"
 
 /* Shares are multiplied by a power of two if their sum is far from 1, so that none overflows or vanishes. */
 static const float hairlut_large_share = 1.26765060e30f /* 2^100 */, hairlut_small_share = 9.09494702e-13f; /* 2^-40 */
 static const float hairlut_shrink = 9.09494702e-13f /* 2^-40 */, hairlut_grow = 1.23794004e27f;             /* 2^90 */
 
-/* Where x lies among `count` nodes of an axis. NaN, and what is below the first, gives the first. */
-HAIRLUT_INLINE hairlut_node hairlut_mixture_node(const float *nodes, int count, float x)
-{
-    int j = 0;
-    for (int n = count - 1; n > 1;) {
-        const int half = n / 2;
-        j += nodes[2 * (j + half)] <= x ? half : 0;
-        n -= half;
-    }
-    const hairlut_node node = {j, hairlut_clamp((x - nodes[2 * j]) * nodes[2 * j + 1], 0.0f, 1.0f)};
-    return node;
-}
+/* Turns in floats are in units of 2 pi / 2^32 too. Adding 3 2^54 rounds one to whole turns; a millionth of a turn before that, ties go
+ * up. */
+static const float hairlut_whole_turns = 5.40431955e16f, hairlut_turn_ties = 1024.0f /* 2^10 */;
+static const float hairlut_turn_radians = 1.46291808e-9f /* 2 pi / 2^32 */;
 
 /* The factor that brings the sum of shares, each not negative and not NaN, near 1; 1 for all that people write. */
 static inline float hairlut_share_unit(float sum)
@@ -32,14 +26,13 @@ static inline float hairlut_share_unit(float sum)
     return sum > hairlut_large_share ? hairlut_shrink : sum < hairlut_small_share ? hairlut_grow : 1.0f;
 }
 
-/* The caller's shares, lobe k's at shares[k * stride]; 0 in place of negative ones. */
-HAIRLUT_INLINE void hairlut_mixture_given(int count, const float *shares, size_t stride, hairlut_mix *mix)
+/* The caller's shares of the lobes; 0 in place of negative ones. */
+HAIRLUT_INLINE void hairlut_mixture_given(int count, const float *shares, hairlut_mix *mix)
 {
     float sum = 0.0f, finite = 0.0f;
     for (int k = 0; k < count; ++k) {
-        const float share = shares[(size_t)k * stride];
-        finite += share - share; /* NaN if it is infinite or NaN */
-        mix->share[k] = hairlut_max(share, hairlut_constant(0.0f));
+        finite += shares[k] - shares[k]; /* NaN if it is infinite or NaN */
+        mix->share[k] = hairlut_max(shares[k], hairlut_constant(0.0f));
         sum += mix->share[k];
     }
     const float unit = hairlut_share_unit(sum);
@@ -49,46 +42,90 @@ HAIRLUT_INLINE void hairlut_mixture_given(int count, const float *shares, size_t
     mix->sum = finite == 0.0f ? mix->sum : 0.0f;
 }
 
-/* The share of a lobe from the four corners around: along theta_r by t, then along the offset by s. */
-static inline float hairlut_blend_shares(const float *low, const float *low_above, const float *high,
-                                         const float *high_above, float t, float s)
+/* Four lobes at the four nodes of theta_r and the offset around a place: at the lower and the upper theta_r of the lower offset,
+ * then of the upper one. */
+typedef struct hairlut_four_nodes {
+    hairlut_quad share[4], turn[4];
+} hairlut_four_nodes;
+
+static inline hairlut_four_nodes hairlut_read_fours(const hairlut_four *four, const ptrdiff_t node[4])
 {
-    const float from = (1.0f - t) * low[0] + t * low_above[0], to = (1.0f - t) * high[0] + t * high_above[0];
-    return (1.0f - s) * from + s * to;
+    hairlut_four_nodes read;
+    HAIRLUT_UNROLLED
+    for (int l = 0; l < 4; ++l) {
+        read.share[l] = hairlut_quad_anywhere(four[node[l]].share);
+        read.turn[l] = hairlut_turns_float(hairlut_turns_load(four[node[l]].turn));
+    }
+    return read;
 }
 
-static inline float hairlut_blend_turns(const float *low, const float *high, float t, float s)
+/* Those of the corners of a strand, blended; `four` is that of the first corner. */
+HAIRLUT_INLINE hairlut_four_nodes hairlut_blend_fours(const hairlut_model *model, const hairlut_corners *corners,
+                                                      const hairlut_four *four, const ptrdiff_t node[4])
 {
-    const float from = low[1] + t * low[2], to = high[1] + t * high[2];
-    return hairlut_wrap_near(from + s * hairlut_wrap_near(to - from, -hairlut_pi), -hairlut_pi);
+    const hairlut_spacing *spacing = &model->strands->mixture;
+    hairlut_four_nodes blend = hairlut_read_fours(four, node);
+    for (int l = 0; l < 4; ++l)
+        blend.share[l] = hairlut_quad_mul(hairlut_quad_all(corners->weight[0]), blend.share[l]);
+    for (int c = 1; c < spacing->count; ++c) {
+        const hairlut_four *here = four + spacing->corner[c];
+        const hairlut_quad weight = hairlut_quad_all(corners->weight[c]);
+        HAIRLUT_UNROLLED
+        for (int l = 0; l < 4; ++l)
+            blend.share[l] =
+                hairlut_quad_add(blend.share[l], hairlut_quad_mul(weight, hairlut_quad_anywhere(here[node[l]].share)));
+        if (!model->mixture.turns_vary)
+            continue;
+        HAIRLUT_UNROLLED
+        for (int l = 0; l < 4; ++l) {
+            const hairlut_turns arc =
+                hairlut_turns_sub(hairlut_turns_load(here[node[l]].turn), hairlut_turns_load(four[node[l]].turn));
+            blend.turn[l] = hairlut_quad_add(blend.turn[l], hairlut_quad_mul(weight, hairlut_turns_float(arc)));
+        }
+    }
+    return blend;
 }
 
-/* Between nodes; a NaN offset counts as -1; its density is 0. */
-static inline void hairlut_mixture_between(const hairlut_model *model, float theta_r, float h, hairlut_mix *mix)
+static inline hairlut_quad hairlut_blend_shares(hairlut_quad a, hairlut_quad b, hairlut_quad t)
+{
+    const hairlut_quad rest = hairlut_quad_sub(hairlut_quad_all(1.0f), t);
+    return hairlut_quad_add(hairlut_quad_mul(rest, a), hairlut_quad_mul(t, b));
+}
+
+/* Less whole turns: from minus half a turn, or a millionth below it, to half a turn */
+static inline hairlut_quad hairlut_wrap_turns(hairlut_quad a)
+{
+    const hairlut_quad round = hairlut_quad_all(hairlut_whole_turns), up = hairlut_quad_all(hairlut_turn_ties);
+    return hairlut_quad_sub(a, hairlut_quad_sub(hairlut_quad_add(hairlut_quad_add(a, up), round), round));
+}
+
+static inline hairlut_quad hairlut_blend_turns(hairlut_quad a, hairlut_quad b, hairlut_quad t)
+{
+    return hairlut_quad_add(a, hairlut_quad_mul(t, hairlut_wrap_turns(hairlut_quad_sub(b, a))));
+}
+
+/* Shares and turns between nodes; a NaN offset counts as -1, its density is 0. corners: those of the strand, or NULL. */
+HAIRLUT_INLINE void hairlut_mixture_between(const hairlut_model *model, const hairlut_corners *corners, float theta_r,
+                                            float h, hairlut_mix *mix)
 {
     const hairlut_mixture *m = &model->mixture;
-    const int count = model->lobe_count;
-    const hairlut_node row = hairlut_mixture_node(m->theta_r, m->rows, theta_r);
-    const hairlut_node column = hairlut_mixture_node(m->arc, m->columns, hairlut_asin(m->mirrored ? fabsf(h) : h));
-    const int node = HAIRLUT_CORNER * count, above = m->rows > 1 ? node * m->columns : 0, beside = m->columns > 1 ? node : 0;
-    const float *corner = m->corners + (ptrdiff_t)row.j * above + (ptrdiff_t)column.j * beside;
-    mix->sum = 0.0f;
-    for (int k = 0; k < count; ++k, corner += HAIRLUT_CORNER) {
-        mix->share[k] =
-            hairlut_blend_shares(corner, corner + above, corner + beside, corner + above + beside, row.t, column.t);
-        mix->sum += mix->share[k];
-        mix->turn[k] = m->turned ? hairlut_blend_turns(corner, corner + beside, row.t, column.t) : 0.0f;
-    }
-}
-
-/* The same of the only node: what blending it with itself gives. */
-static inline void hairlut_mixture_alone(const hairlut_model *model, hairlut_mix *mix)
-{
-    const float *corner = model->mixture.corners;
-    mix->sum = 0.0f;
-    for (int k = 0; k < model->lobe_count; ++k, corner += HAIRLUT_CORNER) {
-        mix->sum += mix->share[k] = corner[0];
-        mix->turn[k] = corner[1];
+    const hairlut_node row = hairlut_nodes_place(&m->theta_r, theta_r);
+    const hairlut_node column = hairlut_nodes_place(&m->arc, hairlut_asin(m->mirrored ? fabsf(h) : h));
+    const ptrdiff_t node[4] = {0, m->above, m->beside, m->above + m->beside};
+    const hairlut_quad t = hairlut_quad_all(row.t), s = hairlut_quad_all(column.t);
+    const hairlut_four *four = m->fours + (ptrdiff_t)row.j * m->above + (ptrdiff_t)column.j * m->beside;
+    if (corners)
+        four += (corners->node + 1) * model->strands->mixture.pitch;
+    for (int q = 0; q < m->four_count; ++q, ++four) {
+        const hairlut_four_nodes at =
+            corners ? hairlut_blend_fours(model, corners, four, node) : hairlut_read_fours(four, node);
+        const hairlut_quad low = hairlut_blend_shares(at.share[0], at.share[1], t),
+                           high = hairlut_blend_shares(at.share[2], at.share[3], t);
+        const hairlut_quad turn = hairlut_blend_turns(hairlut_blend_turns(at.turn[0], at.turn[1], t),
+                                                      hairlut_blend_turns(at.turn[2], at.turn[3], t), s);
+        hairlut_quad_store(mix->share + 4 * q, hairlut_blend_shares(low, high, s));
+        hairlut_quad_store(mix->turn + 4 * q,
+                           hairlut_quad_mul(hairlut_quad_all(hairlut_turn_radians), hairlut_wrap_turns(turn)));
     }
 }
 
@@ -106,20 +143,25 @@ static inline void hairlut_mixture_weigh(int count, hairlut_mix *mix)
         mix->lobes[0] = 0;
 }
 
-/* Fills *mix. shares: the caller's, as hairlut_mixture_given takes them, or NULL. */
-static inline void hairlut_mixture_fill(const hairlut_model *model, const float *shares, size_t stride, float theta_r,
-                                        float offset, hairlut_mix *mix)
+/* Fills *mix. shares: the caller's, or NULL; corners: those of a strand, or NULL for the standard values. */
+HAIRLUT_INLINE void hairlut_mixture_fill(const hairlut_model *model, const hairlut_corners *corners, const float *shares,
+                                         float theta_r, float offset, hairlut_mix *mix)
 {
-    const int mirrored = model->mixture.mirrored, alone = model->mixture.rows == 1 && model->mixture.columns == 1;
     const float h = hairlut_clamp(offset, hairlut_constant(-1.0f), hairlut_constant(1.0f));
-    mix->side = (float)(1 - 2 * (mirrored & (h < 0.0f)));
-    if (alone)
-        hairlut_mixture_alone(model, mix);
-    else
-        hairlut_mixture_between(model, theta_r, h, mix);
+    mix->side = (float)(1 - 2 * (model->mixture.mirrored & (h < 0.0f)));
+    hairlut_mixture_between(model, corners, theta_r, h, mix);
+    mix->sum = 0.0f;
+    for (int k = 0; k < model->lobe_count; ++k)
+        mix->sum += mix->share[k];
     if (shares)
-        hairlut_mixture_given(model->lobe_count, shares, stride, mix);
+        hairlut_mixture_given(model->lobe_count, shares, mix);
     hairlut_mixture_weigh(model->lobe_count, mix);
+}
+
+static void hairlut_mixture_standard(const hairlut_model *model, const float *shares, float theta_r, float offset,
+                                     hairlut_mix *mix)
+{
+    hairlut_mixture_fill(model, NULL, shares, theta_r, offset, mix);
 }
 
 /* The mixture there: the model's, where it is constant, else *own, filled. */
@@ -128,7 +170,7 @@ HAIRLUT_INLINE const hairlut_mix *hairlut_mixture_at(const hairlut_model *model,
 {
     if (model->mixture.constant && !shares)
         return &model->mixture.mix;
-    hairlut_mixture_fill(model, shares, 1, theta_r, offset, own);
+    hairlut_mixture_standard(model, shares, theta_r, offset, own);
     return own;
 }
 

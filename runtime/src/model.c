@@ -203,17 +203,17 @@ static size_t tables_of(const hairlut_table *table)
     return table->axis_count > 0 ? hairlut_node_count(table->axes, table->axis_count) + 1 : 1;
 }
 
-/* One block: the struct, its strands, its lobes, the mixture, the nodes of parameters, then the tables from the next cache
- * line on. In double, as a size_t of 32 bits may not have room for the nodes of many tables. */
+/* One block: the struct, its strands, its lobes, the nodes of parameters, then from cache lines on the mixture and the tables. In
+ * double, as a size_t of 32 bits may not have room for the nodes of many tables. */
 static double bytes_of(const hairlut_model_desc *desc, const table_list *list)
 {
     double floats = (double)hairlut_mixture_floats(desc->mixture, desc->lobe_count);
     if (desc->parameter_count > 0)
-        floats += (double)sizeof(hairlut_strands) / sizeof(float) + (double)hairlut_strands_floats(desc) +
-                  (double)HAIRLUT_LINE + (double)hairlut_fours_floats(desc->mixture, desc->lobe_count);
+        floats += (double)sizeof(hairlut_strands) / sizeof(float) + (double)hairlut_strands_floats(desc);
     for (int k = 0; k < list->count; ++k)
         floats += (double)hairlut_table_floats(&list->tables[k]) * (double)tables_of(&list->tables[k]);
-    return (double)(sizeof(hairlut_model) + (size_t)desc->lobe_count * sizeof(hairlut_lobe) + line) + floats * sizeof(float);
+    return (double)(sizeof(hairlut_model) + (size_t)desc->lobe_count * sizeof(hairlut_lobe) + 2 * line) +
+           floats * sizeof(float);
 }
 
 /* The axis of a table; with axes over parameters, those of its nodes, and their blend. Returns the end of what was filled. */
@@ -235,10 +235,10 @@ static float *build_table(table_list *list, int k, const hairlut_strands *strand
     return memory + count * floats;
 }
 
-/* Parameters, grids of nodes, and the mixture at them. Returns the end of what was filled. */
+/* Parameters and grids of nodes. Returns the end of what was filled. */
 static float *build_strands(hairlut_strands *strands, const hairlut_model_desc *desc, table_list *list, float *memory)
 {
-    float *next = hairlut_build_parameters(strands, desc, memory), *fours;
+    float *next = hairlut_build_parameters(strands, desc, memory);
     for (int k = 0; k < list->count; ++k) {
         const hairlut_table *table = &list->tables[k];
         const int grid = hairlut_add_grid(strands, table->axes, table->axis_count, &next);
@@ -251,17 +251,15 @@ static float *build_strands(hairlut_strands *strands, const hairlut_model_desc *
         strands->theta[k] = list->nodes[index_of(list, lobe->theta)];
         strands->phi[k] = list->nodes[index_of(list, lobe->phi ? lobe->phi : lobe->theta)];
     }
-    fours = on_a_line(memory + hairlut_strands_floats(desc));
-    hairlut_build_fours(strands, desc->mixture, desc->lobe_count, grid, fours);
-    return fours + hairlut_fours_floats(desc->mixture, desc->lobe_count);
+    strands->mixture = hairlut_space(strands, grid, hairlut_mixture_pitch(desc->mixture, desc->lobe_count));
+    return memory + hairlut_strands_floats(desc);
 }
 
 static void build_model(hairlut_model *model, const hairlut_model_desc *desc, table_list *list)
 {
     hairlut_strands *strands = desc->parameter_count > 0 ? (hairlut_strands *)(model + 1) : NULL;
     hairlut_lobe *lobes = strands ? (hairlut_lobe *)(strands + 1) : (hairlut_lobe *)(model + 1);
-    float *mixture = (float *)(lobes + desc->lobe_count);
-    float *next = mixture + hairlut_mixture_floats(desc->mixture, desc->lobe_count);
+    float *next = (float *)(lobes + desc->lobe_count), *mixture;
     hairlut_corners corners = hairlut_only_corner();
     hairlut_spacing nodes = {0, 1, 1, {0}};
     if (strands) {
@@ -269,7 +267,8 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
         nodes = hairlut_space(strands, strands->mixture.grid, 1);
         corners = hairlut_standard_corners(strands, nodes.grid);
     }
-    next = on_a_line(next);
+    mixture = on_a_line(next);
+    next = on_a_line(mixture + hairlut_mixture_floats(desc->mixture, desc->lobe_count));
     for (int k = 0; k < list->count; ++k)
         next = build_table(list, k, strands, next);
     number_grids(list);
@@ -280,7 +279,7 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
     model->lobe_count = desc->lobe_count;
     memset(&model->mixture.mix, 0, sizeof model->mixture.mix);
     if (model->mixture.constant)
-        hairlut_mixture_fill(model, NULL, 0, 0.0f, 0.0f, &model->mixture.mix);
+        hairlut_mixture_standard(model, NULL, 0.0f, 0.0f, &model->mixture.mix);
     model->lobes = lobes;
     model->direct = hairlut_lobe_index(model, "direct");
     model->multiple = hairlut_lobe_index(model, "multiple");

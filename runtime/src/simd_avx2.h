@@ -44,6 +44,7 @@ static inline mask igreater(whole a, whole b) { return _mm256_castsi256_ps(_mm25
 static inline whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
 static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
 static inline real shifted(real a) { return _mm256_castsi256_ps(_mm256_srli_epi32(_mm256_castps_si256(a), 2)); }
+static inline whole as_whole(real a) { return _mm256_castps_si256(a); }
 static inline real converted(whole a) { return _mm256_cvtepi32_ps(a); }
 /* clang-format on */
 

@@ -53,6 +53,7 @@ static inline mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
 static inline whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }
 static inline whole truncated(real a) { return vcvtq_s32_f32(a); }
 static inline real shifted(real a) { return vreinterpretq_f32_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 2)); }
+static inline whole as_whole(real a) { return vreinterpretq_s32_f32(a); }
 static inline real converted(whole a) { return vcvtq_f32_s32(a); }
 /* clang-format on */
 

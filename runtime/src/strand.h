@@ -6,10 +6,7 @@
 #ifndef HAIRLUT_STRAND_H
 #define HAIRLUT_STRAND_H
 
-#include <stdint.h>
-
 #include "internal.h"
-#include "quad.h"
 
 enum {
     HAIRLUT_MOST_TABLES = 2 * HAIRLUT_MAX_LOBES,
@@ -21,10 +18,7 @@ enum {
 /* The nodes of one axis; tables with the same ones share them. */
 typedef struct hairlut_scale {
     int parameter;
-    int count;
-    int quads;          /* fours of inner nodes; the last is filled up with infinity */
-    const float *inner; /* all but the first and the last, by which a value is searched */
-    const float *nodes; /* for each, its value and 1 / (the next one's - its own); 0 at the last */
+    hairlut_nodes nodes;
 } hairlut_scale;
 
 /* The axes of a table or of the mixture, the fastest first: the number of each one's scale, and how many nodes of the grid lie from
@@ -35,10 +29,10 @@ typedef struct hairlut_node_grid {
     int scale[HAIRLUT_MAX_AXES], stride[HAIRLUT_MAX_AXES];
 } hairlut_node_grid;
 
-/* The cell of nodes around a strand: the node of its first corner, and the corners' weights, which sum to 1, in all lanes. */
+/* The cell of nodes around a strand: the node of its first corner, and the corners' weights, which sum to 1. */
 typedef struct hairlut_corners {
     int node;
-    hairlut_quad weight[HAIRLUT_CORNERS];
+    float weight[HAIRLUT_CORNERS];
 } hairlut_corners;
 
 /* How the copies for the nodes of a grid are spaced in memory: from one node to the next, and from the first corner to each. */
@@ -49,28 +43,16 @@ typedef struct hairlut_spacing {
     ptrdiff_t corner[HAIRLUT_CORNERS];
 } hairlut_spacing;
 
-/* Shares and turns of four lobes at a node, side by side. A turn is in units of 2 pi / 2^32: the difference of two, modulo
- * 2^32, is the shorter arc. */
-typedef struct hairlut_four {
-    float share[4];
-    int32_t turn[4];
-} hairlut_four;
-
 typedef struct hairlut_strands {
     int parameter_count, scale_count, grid_count;
     float least[HAIRLUT_MAX_PARAMETERS], most[HAIRLUT_MAX_PARAMETERS], standard[HAIRLUT_MAX_PARAMETERS];
     char names[HAIRLUT_MAX_PARAMETERS][HAIRLUT_NAME_SIZE];
     hairlut_scale scales[HAIRLUT_MOST_SCALES];
     hairlut_node_grid grids[HAIRLUT_MOST_GRIDS]; /* number 0 has no axes */
-    /* Of tables, in floats. That of node p stands as the lobe's hairlut_axis does, (p + 1) * pitch behind it; without axes the
-     * pitch is 0, and the only node is that axis itself. */
-    hairlut_spacing theta[HAIRLUT_MAX_LOBES], phi[HAIRLUT_MAX_LOBES];
-    /* Of the mixture, in fours: ((node * rows + j) * columns + o) * four_count and so on are those of theta_r node j, offset o */
-    hairlut_spacing mixture;
-    const hairlut_four *fours;
-    int four_count; /* lobes / 4, rounded up */
-    int turns_vary; /* whether turns depend on parameters */
-    int pairs;      /* whether no table has more than one axis: two corners do, of which one without axes has the weight 0 */
+    /* Of tables, in floats, and of the mixture, in fours. That of node p stands as the lobe's hairlut_axis or the model's mixture
+     * does, (p + 1) * pitch behind it; without axes the pitch is 0, and the only node is that axis or mixture itself. */
+    hairlut_spacing theta[HAIRLUT_MAX_LOBES], phi[HAIRLUT_MAX_LOBES], mixture;
+    int pairs; /* whether no table has more than one axis: two corners do, of which one without axes has the weight 0 */
 } hairlut_strands;
 
 #endif

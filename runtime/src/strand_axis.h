@@ -12,8 +12,8 @@
 typedef struct hairlut_blended {
     const hairlut_axis *axis;
     const hairlut_spacing *nodes;
-    const hairlut_quad *weight; /* of the corners */
-    ptrdiff_t first;            /* floats from the axis' own arrays to those of the first corner */
+    const float *weight; /* of the corners */
+    ptrdiff_t first;     /* floats from the axis' own arrays to those of the first corner */
 } hairlut_blended;
 
 HAIRLUT_INLINE hairlut_blended hairlut_blended_table(const hairlut_axis *axis, const hairlut_spacing *nodes,
@@ -27,9 +27,10 @@ HAIRLUT_INLINE hairlut_blended hairlut_blended_table(const hairlut_axis *axis, c
 /* Four floats that stand at p in the arrays of the first corner; n corners. */
 HAIRLUT_INLINE hairlut_quad hairlut_blend_quad(const hairlut_blended *table, const float *p, int n)
 {
-    hairlut_quad sum = hairlut_quad_mul(table->weight[0], hairlut_quad_load(p));
+    hairlut_quad sum = hairlut_quad_mul(hairlut_quad_all(table->weight[0]), hairlut_quad_load(p));
     for (int c = 1; c < n; ++c)
-        sum = hairlut_quad_add(sum, hairlut_quad_mul(table->weight[c], hairlut_quad_load(p + table->nodes->corner[c])));
+        sum = hairlut_quad_add(
+            sum, hairlut_quad_mul(hairlut_quad_all(table->weight[c]), hairlut_quad_load(p + table->nodes->corner[c])));
     return sum;
 }
 

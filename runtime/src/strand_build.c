@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Lays out a model's parameters, nodes and mixtures as strand.h describes them. */
-#include <math.h>
+/* Lays out nodes as internal.h describes them, and a model's parameters as strand.h does. */
 #include <string.h>
 
 #include "build.h"
@@ -11,23 +10,41 @@ static const hairlut_parameter_nodes *axis_at(const hairlut_parameter_nodes *axe
     return (const hairlut_parameter_nodes *)((const char *)axes + (size_t)a * axes->size);
 }
 
-/* ---- scales --------------------------------------------------------------------------------------------------- */
+/* ---- nodes ---------------------------------------------------------------------------------------------------- */
 
-static int quads_of(int count)
+static int eights_of(int count)
 {
-    return (count - 2 + 3) / 4;
+    return count > 2 ? (count - 2 + 7) / 8 : 0;
 }
 
-static size_t scale_floats(const hairlut_parameter_nodes *axis)
+size_t hairlut_nodes_floats(int count)
 {
-    return 4 * (size_t)quads_of(axis->count) + 2 * (size_t)axis->count;
+    return 8 * (size_t)eights_of(count) + 2 * (size_t)count;
+}
+
+float *hairlut_build_nodes(hairlut_nodes *nodes, const float *values, int count, float *memory)
+{
+    const int inner = 8 * eights_of(count);
+    float *pairs = memory + inner;
+    nodes->inner = memory;
+    nodes->pairs = pairs;
+    nodes->count = count;
+    nodes->eights = eights_of(count);
+    nodes->last = values[count - 1];
+    for (int k = 0; k < inner; ++k)
+        memory[k] = k + 2 < count ? values[k + 1] : HAIRLUT_NO_TEXEL;
+    for (int k = 0; k < count; ++k) {
+        pairs[2 * k] = values[k];
+        pairs[2 * k + 1] = k + 1 < count ? 1.0f / (values[k + 1] - values[k]) : 0.0f;
+    }
+    return pairs + 2 * count;
 }
 
 static size_t axes_floats(const hairlut_parameter_nodes *axes, int axis_count)
 {
     size_t floats = 0;
     for (int a = 0; a < axis_count; ++a)
-        floats += scale_floats(axis_at(axes, a));
+        floats += hairlut_nodes_floats(axis_at(axes, a)->count);
     return floats;
 }
 
@@ -46,30 +63,12 @@ size_t hairlut_strands_floats(const hairlut_model_desc *desc)
 
 static int is_scale(const hairlut_scale *scale, const hairlut_parameter_nodes *axis)
 {
-    if (scale->parameter != axis->parameter || scale->count != axis->count)
+    if (scale->parameter != axis->parameter || scale->nodes.count != axis->count)
         return 0;
     for (int k = 0; k < axis->count; ++k)
-        if (scale->nodes[2 * k] != axis->values[k])
+        if (scale->nodes.pairs[2 * k] != axis->values[k])
             return 0;
     return 1;
-}
-
-static float *build_scale(hairlut_scale *scale, const hairlut_parameter_nodes *axis, float *memory)
-{
-    const int inner = 4 * quads_of(axis->count);
-    float *nodes = memory + inner;
-    scale->parameter = axis->parameter;
-    scale->count = axis->count;
-    scale->quads = quads_of(axis->count);
-    scale->inner = memory;
-    scale->nodes = nodes;
-    for (int k = 0; k < inner; ++k)
-        memory[k] = k + 2 < axis->count ? axis->values[k + 1] : INFINITY;
-    for (int k = 0; k < axis->count; ++k) {
-        nodes[2 * k] = axis->values[k];
-        nodes[2 * k + 1] = k + 1 < axis->count ? 1.0f / (axis->values[k + 1] - axis->values[k]) : 0.0f;
-    }
-    return nodes + 2 * axis->count;
 }
 
 static int add_scale(hairlut_strands *strands, const hairlut_parameter_nodes *axis, float **memory)
@@ -78,7 +77,8 @@ static int add_scale(hairlut_strands *strands, const hairlut_parameter_nodes *ax
     while (s < strands->scale_count && !is_scale(&strands->scales[s], axis))
         ++s;
     if (s == strands->scale_count) {
-        *memory = build_scale(&strands->scales[s], axis, *memory);
+        strands->scales[s].parameter = axis->parameter;
+        *memory = hairlut_build_nodes(&strands->scales[s].nodes, axis->values, axis->count, *memory);
         ++strands->scale_count;
     }
     return s;
@@ -123,7 +123,7 @@ hairlut_corners hairlut_only_corner(void)
 {
     hairlut_corners corners;
     corners.node = 0;
-    corners.weight[0] = hairlut_quad_all(1.0f);
+    corners.weight[0] = 1.0f;
     return corners;
 }
 
@@ -132,7 +132,7 @@ hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int gri
     hairlut_node places[HAIRLUT_MOST_SCALES];
     hairlut_corners corners;
     for (int s = 0; s < strands->scale_count; ++s)
-        places[s] = hairlut_scale_place(&strands->scales[s], strands->standard[strands->scales[s].parameter]);
+        places[s] = hairlut_nodes_place(&strands->scales[s].nodes, strands->standard[strands->scales[s].parameter]);
     hairlut_corners_of(&strands->grids[grid], places, strands->grids[grid].axis_count, &corners);
     return corners;
 }
@@ -154,44 +154,4 @@ float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_de
     hairlut_add_grid(strands, NULL, 0, &memory); /* number 0 */
     strands->pairs = 1;
     return memory;
-}
-
-/* ---- the mixture ---------------------------------------------------------------------------------------------- */
-
-static size_t grid_nodes(const hairlut_mixture_desc *desc)
-{
-    return hairlut_node_count(desc->axes, desc->axis_count) * (size_t)desc->theta_r_count * (size_t)desc->offset_count;
-}
-
-size_t hairlut_fours_floats(const hairlut_mixture_desc *desc, int lobe_count)
-{
-    return grid_nodes(desc) * (size_t)((lobe_count + 3) / 4) * sizeof(hairlut_four) / sizeof(float);
-}
-
-/* A turn in units of 2 pi / 2^32, modulo 2^32. */
-static int32_t fixed_turn(double turn)
-{
-    static const double unit = 683565275.57643158979; /* 2^32 / (2 pi) */
-    const double fixed = floor(hairlut_shorter_arc(turn) * unit + 0.5);
-    return fixed >= 2147483648.0 ? INT32_MIN : (int32_t)fixed;
-}
-
-void hairlut_build_fours(hairlut_strands *strands, const hairlut_mixture_desc *desc, int lobe_count, int grid, float *memory)
-{
-    hairlut_four *four = (hairlut_four *)memory;
-    const size_t nodes = hairlut_node_count(desc->axes, desc->axis_count);
-    strands->fours = four;
-    strands->four_count = (lobe_count + 3) / 4;
-    strands->mixture =
-        hairlut_space(strands, grid, (ptrdiff_t)strands->four_count * desc->theta_r_count * desc->offset_count);
-    for (size_t node = 0; node < nodes; ++node)
-        for (int j = 0; j < desc->theta_r_count; ++j)
-            for (int o = 0; o < desc->offset_count; ++o, four += strands->four_count)
-                for (int k = 0; k < 4 * strands->four_count; ++k) {
-                    const int exists = k < lobe_count;
-                    four[k / 4].share[k % 4] = exists ? (float)hairlut_share_at(desc, lobe_count, k, node, j, o) : 0.0f;
-                    four[k / 4].turn[k % 4] = exists ? fixed_turn(hairlut_turn_at(desc, k, node, j, o)) : 0;
-                    strands->turns_vary |=
-                        four[k / 4].turn[k % 4] != four[k / 4 - (ptrdiff_t)node * strands->mixture.pitch].turn[k % 4];
-                }
 }

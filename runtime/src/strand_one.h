@@ -3,10 +3,8 @@
 #ifndef HAIRLUT_STRAND_ONE_H
 #define HAIRLUT_STRAND_ONE_H
 
-#include "corners.h"
 #include "one.h"
 #include "strand_axis.h"
-#include "strand_mixture.h"
 
 /* What a call reads: the corners of each grid of nodes, and the mixture there. */
 typedef struct strand {
@@ -44,8 +42,8 @@ static void place_strand(const hairlut_model *model, const float *parameters, st
         s->known &= parameters[p] == parameters[p];
     for (int k = 0; k < strands->scale_count; ++k) {
         const int p = strands->scales[k].parameter;
-        places[k] =
-            hairlut_scale_place(&strands->scales[k], hairlut_clamp(parameters[p], strands->least[p], strands->most[p]));
+        places[k] = hairlut_nodes_place(&strands->scales[k].nodes,
+                                        hairlut_clamp(parameters[p], strands->least[p], strands->most[p]));
     }
     for (int g = 0; g < strands->grid_count; ++g)
         place_corners(&strands->grids[g], places, &s->corners[g]);
@@ -53,16 +51,7 @@ static void place_strand(const hairlut_model *model, const float *parameters, st
 
 static void mix_strand(strand *s, const float *shares, float theta_r, float offset)
 {
-    const float h = hairlut_clamp(offset, -1.0f, 1.0f);
-    hairlut_mix *mix = &s->mix;
-    mix->side = (float)(1 - 2 * (s->model->mixture.mirrored & (h < 0.0f)));
-    hairlut_strand_mixture(s->model, &s->corners[s->model->strands->mixture.grid], theta_r, h, mix);
-    mix->sum = 0.0f;
-    for (int k = 0; k < s->model->lobe_count; ++k)
-        mix->sum += mix->share[k];
-    if (shares)
-        hairlut_mixture_given(s->model->lobe_count, shares, 1, mix);
-    hairlut_mixture_weigh(s->model->lobe_count, mix);
+    hairlut_mixture_fill(s->model, &s->corners[s->model->strands->mixture.grid], shares, theta_r, offset, &s->mix);
 }
 
 /* hairlut_lobe_draw */

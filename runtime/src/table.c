@@ -258,7 +258,7 @@ static void blend_floats(float *blend, size_t count, const hairlut_spacing *node
     for (size_t k = 0; k < count; ++k) {
         double sum = 0.0;
         for (int c = 0; c < nodes->count; ++c)
-            sum += (double)hairlut_quad_first(corners->weight[c]) * (double)first[(ptrdiff_t)k + nodes->corner[c]];
+            sum += (double)corners->weight[c] * (double)first[(ptrdiff_t)k + nodes->corner[c]];
         if (blend[k] != HAIRLUT_NO_TEXEL)
             blend[k] = (float)sum;
     }

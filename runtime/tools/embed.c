@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Writes models as C source, laid out ready to be read: embed DIRECTORY... > src/builtin_tables.c. Each model has its directory's
  * name. Arrays that are equal, in one model or in several, are written once. */
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -135,24 +136,36 @@ static void print_lobes(const char *name, const hairlut_model *model)
     puts("};");
 }
 
-static size_t corner_floats(const hairlut_model *model)
+static size_t four_count(const hairlut_model *model)
 {
-    return (size_t)(HAIRLUT_CORNER * model->lobe_count) * (size_t)model->mixture.rows * (size_t)model->mixture.columns;
+    const hairlut_mixture *m = &model->mixture;
+    return (size_t)m->four_count * (size_t)m->theta_r.count * (size_t)m->arc.count;
 }
 
-static int corners_of(const hairlut_model *model)
+static int fours_of(const hairlut_model *model)
 {
-    return array_number(model->mixture.corners, corner_floats(model), (size_t)(HAIRLUT_CORNER * model->lobe_count));
+    const hairlut_four *four = model->mixture.fours;
+    const size_t count = four_count(model);
+    const int known = known_number(four, count * sizeof *four);
+    if (known >= 0)
+        return known;
+    printf("static const hairlut_four HAIRLUT_LINE_ALIGNED array_%d[%zu] = {\n", array_count, count);
+    for (size_t k = 0; k < count; ++k) {
+        fputs("{{", stdout);
+        for (int l = 0; l < 4; ++l) {
+            print_float(four[k].share[l]);
+            fputs(l < 3 ? "," : "},{", stdout);
+        }
+        for (int l = 0; l < 4; ++l)
+            printf(l < 3 ? "%" PRId32 "," : "%" PRId32, four[k].turn[l]);
+        fputs(k + 1 == count ? "}}};\n" : "}},\n", stdout);
+    }
+    return array_count++;
 }
 
-static int theta_r_of(const hairlut_model *model)
+static int nodes_of(const hairlut_nodes *nodes)
 {
-    return array_number(model->mixture.theta_r, 2 * (size_t)model->mixture.rows, HAIRLUT_LINE);
-}
-
-static int arc_of(const hairlut_model *model)
-{
-    return array_number(model->mixture.arc, 2 * (size_t)model->mixture.columns, HAIRLUT_LINE);
+    return array_number(nodes->inner, (size_t)(8 * nodes->eights + 2 * nodes->count), HAIRLUT_LINE);
 }
 
 static void print_floats(const char *field, const float *x, int count)
@@ -179,14 +192,25 @@ static void print_mix(const hairlut_mix *mix, int lobe_count)
     printf(".count = %d}", mix->count);
 }
 
+static void print_nodes(const char *field, const hairlut_nodes *nodes)
+{
+    const int number = nodes_of(nodes);
+    printf(".%s = {.inner = array_%d, .pairs = array_%d + %d, .count = %d, .eights = %d, ", field, number, number,
+           8 * nodes->eights, nodes->count, nodes->eights);
+    print_number("last", nodes->last);
+    fputs("}, ", stdout);
+}
+
 static void print_entry(const char *name, const hairlut_model *model)
 {
     const hairlut_mixture *m = &model->mixture;
     printf("    {\"%s\", {.lobe_count = %d, .direct = %d, .multiple = %d, .lobes = lobes_%s,\n", name, model->lobe_count,
            model->direct, model->multiple, name);
-    printf("      .mixture = {.theta_r = array_%d, .arc = array_%d, .corners = array_%d, .rows = %d, .columns = %d, "
-           ".mirrored = %d, .turned = %d, .constant = %d,",
-           theta_r_of(model), arc_of(model), corners_of(model), m->rows, m->columns, m->mirrored, m->turned, m->constant);
+    printf("      .mixture = {.fours = array_%d, ", fours_of(model));
+    print_nodes("theta_r", &m->theta_r);
+    print_nodes("arc", &m->arc);
+    printf("\n      .four_count = %d, .above = %d, .beside = %d, .mirrored = %d, .turned = %d, .constant = %d,",
+           m->four_count, m->above, m->beside, m->mirrored, m->turned, m->constant);
     print_mix(&m->mix, model->lobe_count);
     puts("}}},");
 }
@@ -225,7 +249,7 @@ int main(int argc, char **argv)
         printf(" %s", name_of(argv[k]));
     fputs("; not to be edited. */\n#include \"internal.h\"\n\n", stdout);
     for (int k = 1; k < argc; ++k) {
-        corners_of(models[k]), theta_r_of(models[k]), arc_of(models[k]);
+        fours_of(models[k]), nodes_of(&models[k]->mixture.theta_r), nodes_of(&models[k]->mixture.arc);
         print_lobes(name_of(argv[k]), models[k]);
     }
     printf("const hairlut_builtin_entry hairlut_builtin_entries[] = {\n");

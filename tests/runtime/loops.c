@@ -144,20 +144,26 @@ static int same_lobe(const hairlut_lobe *a, const hairlut_lobe *b)
            (a->uniform || (same_axis(&a->phi, &b->phi) && a->sign == b->sign));
 }
 
-static int same_mixture(const hairlut_mixture *a, const hairlut_mixture *b, int lobes)
+static int same_nodes(const hairlut_nodes *a, const hairlut_nodes *b)
 {
-    return a->rows == b->rows && a->columns == b->columns && a->mirrored == b->mirrored && a->turned == b->turned &&
+    const size_t floats = (size_t)(8 * a->eights + 2 * a->count);
+    return a->count == b->count && a->eights == b->eights && a->last == b->last &&
+           a->pairs - a->inner == b->pairs - b->inner && memcmp(a->inner, b->inner, floats * sizeof(float)) == 0;
+}
+
+static int same_mixture(const hairlut_mixture *a, const hairlut_mixture *b)
+{
+    return same_nodes(&a->theta_r, &b->theta_r) && same_nodes(&a->arc, &b->arc) && a->four_count == b->four_count &&
+           a->above == b->above && a->beside == b->beside && a->mirrored == b->mirrored && a->turned == b->turned &&
            a->constant == b->constant && memcmp(&a->mix, &b->mix, sizeof a->mix) == 0 &&
-           memcmp(a->theta_r, b->theta_r, 2 * (size_t)a->rows * sizeof(float)) == 0 &&
-           memcmp(a->arc, b->arc, 2 * (size_t)a->columns * sizeof(float)) == 0 &&
-           memcmp(a->corners, b->corners, (size_t)(HAIRLUT_CORNER * lobes * a->rows * a->columns) * sizeof(float)) == 0;
+           memcmp(a->fours, b->fours, (size_t)(a->four_count * a->theta_r.count * a->arc.count) * sizeof *a->fours) == 0;
 }
 
 /* Whether two models are the same, bit for bit. */
 LOOP int same_models(const hairlut_model *a, const hairlut_model *b)
 {
     int same = a->lobe_count == b->lobe_count && a->direct == b->direct && a->multiple == b->multiple &&
-               same_mixture(&a->mixture, &b->mixture, a->lobe_count);
+               same_mixture(&a->mixture, &b->mixture);
     for (int k = 0; same && k < a->lobe_count; ++k)
         same = same_lobe(&a->lobes[k], &b->lobes[k]);
     return same;

@@ -8,7 +8,7 @@
 
 #include "quad.h"
 
-static const float hairlut_two_pi = 6.28318548f;
+static const float hairlut_two_pi = 6.28318548f, hairlut_below_two_pi = 6.28318501f; /* the float next to it */
 static const float hairlut_pi = 3.14159274f;
 static const float hairlut_inverse_two_pi = 0.159154943f;
 /* 2 pi and pi/2 in two parts each; the first part of 2 pi has so few bits that its multiples are exact */

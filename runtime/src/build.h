@@ -100,6 +100,9 @@ hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int gri
 hairlut_result hairlut_validate_mixture(const hairlut_mixture_desc *desc, int lobe_count, char *message);
 size_t hairlut_mixture_floats(const hairlut_mixture_desc *desc, int lobe_count);
 
+/* What strands read of the lobes' axes, which are built and numbered; `nodes` of each is set. */
+void hairlut_build_strand_tables(hairlut_strands *strands, const hairlut_lobe *lobes, int lobe_count);
+
 /* From one node of the parameters to the next, in fours; 0 where the mixture does not depend on them. */
 ptrdiff_t hairlut_mixture_pitch(const hairlut_mixture_desc *desc, int lobe_count);
 

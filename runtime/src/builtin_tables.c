@@ -8302,7 +8302,7 @@ static const hairlut_lobe lobes_brown[3] = {
     {.name = "lobe2", .uniform = 0, .sign = -1.0f,
      .theta = {.rows = array_40, .ends = {array_41, array_41 + 392}, .knots = array_42, .links = array_43,
       .row_origin = -1.56905103f, .row_scale = 3.82396746f, .row_last = 12.0f, .e = 6.10351562e-05f, .scale = 3.24275348e+29f, .origin = 0.639520347f, .low = -1.57079637f, .high = 1.57079637f, 
-      .pitch = 56, .warp = 1, .columns = 12, .height = 13, .stride = 48, .step = 8, .grid = 4},
+      .pitch = 56, .warp = 1, .columns = 12, .height = 13, .stride = 48, .step = 8, .grid = 2},
      .phi = {.rows = array_44, .ends = {array_45, array_45 + 560}, .knots = array_46, .links = array_47,
       .row_origin = -1.56905103f, .row_scale = 5.73595095f, .row_last = 18.0f, .e = 0.00390625f, .scale = 4.0936971e+29f, .origin = 2.26055026f, .low = 0.0f, .high = 6.28318548f, 
       .pitch = 80, .warp = 1, .columns = 12, .height = 19, .stride = 48, .step = 8, .grid = 0},

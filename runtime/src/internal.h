@@ -76,6 +76,13 @@ enum { HAIRLUT_CELL = 4, HAIRLUT_KNOT = 4 /* floats */ };
 #define HAIRLUT_INLINE static inline
 #endif
 
+/* A function that is not inlined: it is long and seldom called. */
+#if defined(__GNUC__)
+#define HAIRLUT_APART __attribute__((noinline))
+#else
+#define HAIRLUT_APART
+#endif
+
 /* Before a loop over single samples: less of it is counting. clang does so by itself. */
 #if defined(__GNUC__) && !defined(__clang__)
 #define HAIRLUT_UNROLLED _Pragma("GCC unroll 4")

@@ -130,16 +130,17 @@ HAIRLUT_INLINE void hairlut_mixture_between(const hairlut_model *model, const ha
 }
 
 /* Weights, and which lobes have one, from shares and their sum. */
-static inline void hairlut_mixture_weigh(int count, hairlut_mix *mix)
+HAIRLUT_INLINE void hairlut_mixture_weigh(int fours, hairlut_mix *mix)
 {
-    const float unit = 1.0f / mix->sum;
-    mix->count = 0;
-    for (int k = 0; k < count; ++k) {
-        mix->weight[k] = mix->share[k] * unit;
-        mix->lobes[mix->count] = k;
-        mix->count += mix->weight[k] > 0.0f;
+    const hairlut_quad unit = hairlut_quad_all(1.0f / mix->sum);
+    int count = 0;
+    for (int q = 0; q < fours; ++q) {
+        const hairlut_quad share = hairlut_quad_anywhere(mix->share + 4 * q);
+        count += hairlut_quad_list(share, 4 * q, mix->lobes + count);
+        hairlut_quad_store(mix->weight + 4 * q, hairlut_quad_mul(share, unit));
     }
-    if (mix->count == 0) /* then a draw is of lobe 0 */
+    mix->count = count;
+    if (count == 0) /* then a draw is of lobe 0 */
         mix->lobes[0] = 0;
 }
 
@@ -151,11 +152,11 @@ HAIRLUT_INLINE void hairlut_mixture_fill(const hairlut_model *model, const hairl
     mix->side = (float)(1 - 2 * (model->mixture.mirrored & (h < 0.0f)));
     hairlut_mixture_between(model, corners, theta_r, h, mix);
     mix->sum = 0.0f;
-    for (int k = 0; k < model->lobe_count; ++k)
+    for (int k = 0; k < 4 * model->mixture.four_count; ++k) /* of those beyond the last lobe: 0 */
         mix->sum += mix->share[k];
     if (shares)
         hairlut_mixture_given(model->lobe_count, shares, mix);
-    hairlut_mixture_weigh(model->lobe_count, mix);
+    hairlut_mixture_weigh(model->mixture.four_count, mix);
 }
 
 static void hairlut_mixture_standard(const hairlut_model *model, const float *shares, float theta_r, float offset,

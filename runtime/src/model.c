@@ -165,15 +165,20 @@ static void list_tables(table_list *list, const hairlut_model_desc *desc)
     }
 }
 
+static int same_rows(const hairlut_axis *a, const hairlut_axis *b)
+{
+    return a->row_origin == b->row_origin && a->row_scale == b->row_scale && a->height == b->height;
+}
+
 /* Numbers the axes by their rows. */
 static void number_grids(table_list *list)
 {
+    int grids = 0;
     for (int k = 0; k < list->count; ++k) {
         int first = 0;
-        while (list->axes[first].row_origin != list->axes[k].row_origin ||
-               list->axes[first].row_scale != list->axes[k].row_scale || list->axes[first].height != list->axes[k].height)
+        while (!same_rows(&list->axes[first], &list->axes[k]))
             ++first;
-        list->axes[k].grid = first;
+        list->axes[k].grid = first < k ? list->axes[first].grid : grids++;
     }
 }
 
@@ -248,8 +253,8 @@ static float *build_strands(hairlut_strands *strands, const hairlut_model_desc *
     const int grid = hairlut_add_grid(strands, desc->mixture->axes, desc->mixture->axis_count, &next);
     for (int k = 0; k < desc->lobe_count; ++k) {
         const hairlut_lobe_desc *lobe = lobe_at(desc, k);
-        strands->theta[k] = list->nodes[index_of(list, lobe->theta)];
-        strands->phi[k] = list->nodes[index_of(list, lobe->phi ? lobe->phi : lobe->theta)];
+        strands->theta[k].nodes = list->nodes[index_of(list, lobe->theta)];
+        strands->phi[k].nodes = list->nodes[index_of(list, lobe->phi ? lobe->phi : lobe->theta)];
     }
     strands->mixture = hairlut_space(strands, grid, hairlut_mixture_pitch(desc->mixture, desc->lobe_count));
     return memory + hairlut_strands_floats(desc);
@@ -274,6 +279,8 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
     number_grids(list);
     for (int k = 0; k < desc->lobe_count; ++k)
         build_lobe(&lobes[k], lobe_at(desc, k), list);
+    if (strands)
+        hairlut_build_strand_tables(strands, lobes, desc->lobe_count);
     hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, &nodes, &corners, mixture);
     model->strands = strands;
     model->lobe_count = desc->lobe_count;

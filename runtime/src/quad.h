@@ -2,6 +2,7 @@
 /* Four neighbouring floats at once, and a float's bits, where every processor of an architecture has the instructions:
  * x86-64, AArch64. The form in plain C gives the same numbers. hairlut_quad_load reads from multiples of 16 bytes, hairlut_quad_anywhere from any address. Of lanes:
  * hairlut_quad_where_equal(a, b, x) is x where a == b, else 0; hairlut_quad_swapped, those of each half exchanged;
+ * hairlut_quad_list(a, first, list), how many are above 0, whose numbers from first on go to list, which has room for four;
  * hairlut_quad_count, how many of a are at most x, hairlut_quad_count_two, how many of a and b. */
 #ifndef HAIRLUT_QUAD_H
 #define HAIRLUT_QUAD_H
@@ -143,6 +144,18 @@ static inline unsigned hairlut_quad_count_two(hairlut_quad a, hairlut_quad b, ha
 #else
     return hairlut_bits[_mm_movemask_epi8(_mm_packs_epi16(counted, counted)) & 255];
 #endif
+}
+
+/* The numbers of the lanes whose bits are set, in order. */
+static const int hairlut_lanes[16][4] = {{0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
+                                         {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
+
+static inline int hairlut_quad_list(hairlut_quad a, int first, int *list)
+{
+    const int bits = _mm_movemask_ps(_mm_cmpgt_ps(a, _mm_setzero_ps()));
+    const __m128i numbers = _mm_loadu_si128((const __m128i *)(const void *)hairlut_lanes[bits]);
+    _mm_storeu_si128((__m128i *)(void *)list, _mm_add_epi32(numbers, _mm_set1_epi32(first)));
+    return hairlut_bits[bits];
 }
 
 #elif defined(HAIRLUT_QUAD_NEON)
@@ -413,6 +426,22 @@ static inline hairlut_quad hairlut_quad_along(const float *p, hairlut_quad t)
 static inline unsigned hairlut_count_eight(const float *p, hairlut_quad t, hairlut_quad x)
 {
     return hairlut_quad_count_two(hairlut_quad_along(p, t), hairlut_quad_along(p + 4, t), x);
+}
+#endif
+
+#if !defined(HAIRLUT_QUAD_SSE2)
+static inline int hairlut_quad_list(hairlut_quad a, int first, int *list)
+{
+    float lane[4];
+    int count = 0;
+    hairlut_quad_store(lane, a);
+    for (int l = 0; l < 4; ++l) {
+        list[count] = first + l;
+        count += lane[l] > 0.0f;
+        if (count == 4) /* full */
+            break;
+    }
+    return count;
 }
 #endif
 

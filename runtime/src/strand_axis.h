@@ -7,142 +7,140 @@
 
 #include "axis.h"
 #include "corners.h"
+#include "oct.h"
 
-/* A table at a strand. */
-typedef struct hairlut_blended {
-    const hairlut_axis *axis;
-    const hairlut_spacing *nodes;
-    const float *weight; /* of the corners */
-    ptrdiff_t first;     /* floats from the axis' own arrays to those of the first corner */
-} hairlut_blended;
+/* The search of an angle in a table at a strand, in steps, so that those of several tables run side by side: their loads overlap.
+ * Filled field by field, as what is read again at another width has to wait for. */
+typedef struct hairlut_strand_search {
+    const hairlut_strand_table *table;
+    const hairlut_row *row; /* of theta_r */
+    const float *weight;    /* of the corners */
+    ptrdiff_t first;        /* floats from the first node's arrays to those of the first corner */
+    const float *groups;    /* of the row, in the first corner's arrays */
+    float x, given;
+    unsigned cell; /* as far as it is known, counted from the low end */
+} hairlut_strand_search;
 
-HAIRLUT_INLINE hairlut_blended hairlut_blended_table(const hairlut_axis *axis, const hairlut_spacing *nodes,
-                                                     const hairlut_corners *corners)
+HAIRLUT_INLINE void hairlut_strand_start(hairlut_strand_search *s, const hairlut_strand_table *table,
+                                         const hairlut_row *rows, const hairlut_corners *corners)
 {
-    const hairlut_corners *mine = &corners[nodes->grid];
-    const hairlut_blended table = {axis, nodes, mine->weight, (mine->node + 1) * nodes->pitch};
-    return table;
+    const hairlut_corners *mine = &corners[table->nodes.grid];
+    s->table = table;
+    s->row = &rows[table->grid];
+    s->weight = mine->weight;
+    s->first = mine->node * table->pitch;
 }
 
-/* Four floats that stand at p in the arrays of the first corner; n corners. */
-HAIRLUT_INLINE hairlut_quad hairlut_blend_quad(const hairlut_blended *table, const float *p, int n)
+/* Eight floats that stand at p in the arrays of the first corner */
+HAIRLUT_INLINE hairlut_oct hairlut_blend_oct(const hairlut_strand_search *s, const float *p, int n)
 {
-    hairlut_quad sum = hairlut_quad_mul(hairlut_quad_all(table->weight[0]), hairlut_quad_load(p));
+    hairlut_oct sum = hairlut_oct_mul(hairlut_oct_all(s->weight[0]), hairlut_oct_load(p));
+    if (n == 2)
+        return hairlut_oct_add(sum, hairlut_oct_mul(hairlut_oct_all(s->weight[1]), hairlut_oct_load(p + s->table->second)));
     for (int c = 1; c < n; ++c)
-        sum = hairlut_quad_add(
-            sum, hairlut_quad_mul(hairlut_quad_all(table->weight[c]), hairlut_quad_load(p + table->nodes->corner[c])));
+        sum = hairlut_oct_add(
+            sum, hairlut_oct_mul(hairlut_oct_all(s->weight[c]), hairlut_oct_load(p + s->table->nodes.corner[c])));
     return sum;
 }
 
-/* Four blended texels from p on, blended with those of the row above; in a small table the changes to it stand behind them. */
-HAIRLUT_INLINE hairlut_quad hairlut_strand_texels(const hairlut_blended *table, const float *p, hairlut_quad t, int small,
-                                                  int n)
+/* How many of the eight blended texels of a small table's group are at most x; the changes to the row above stand behind them. */
+HAIRLUT_INLINE unsigned hairlut_strand_count_eight(const hairlut_strand_search *s, const float *group, hairlut_oct t,
+                                                   hairlut_oct x, int n)
 {
-    const float *above = p + (small ? HAIRLUT_SMALL_GROUP : table->axis->stride);
-    const hairlut_quad from = hairlut_blend_quad(table, p, n), to = hairlut_blend_quad(table, above, n);
-    return hairlut_quad_add(from, hairlut_quad_mul(t, small ? to : hairlut_quad_sub(to, from)));
+    const hairlut_oct from = hairlut_blend_oct(s, group, n), change = hairlut_blend_oct(s, group + HAIRLUT_SMALL_GROUP, n);
+    return hairlut_oct_count(hairlut_oct_add(from, hairlut_oct_mul(t, change)), x);
 }
 
-/* How many texels of a group of `size`, 8 or 16, are at most x. */
-HAIRLUT_INLINE unsigned hairlut_strand_count(const hairlut_blended *table, const float *group, hairlut_quad t,
-                                             hairlut_quad x, int size, int n)
+/* Eight blended texels from p on, blended with those of the row above. */
+HAIRLUT_INLINE hairlut_oct hairlut_strand_texels(const hairlut_strand_search *s, const float *p, hairlut_oct t)
 {
-    unsigned count = 0;
-    for (int k = 0; k < size; k += 8)
-        count += hairlut_quad_count_two(hairlut_strand_texels(table, group + k, t, size == HAIRLUT_SMALL_GROUP, n),
-                                        hairlut_strand_texels(table, group + k + 4, t, size == HAIRLUT_SMALL_GROUP, n), x);
-    return count;
+    const hairlut_oct from = hairlut_blend_oct(s, p, s->table->nodes.count),
+                      to = hairlut_blend_oct(s, p + s->table->stride, s->table->nodes.count);
+    return hairlut_oct_add(from, hairlut_oct_mul(t, hairlut_oct_sub(to, from)));
 }
 
-/* A search of an angle, in steps, so that those of several tables run side by side: their loads overlap. */
-typedef struct hairlut_strand_search {
-    hairlut_blended table;
-    const hairlut_row *row;
-    const float *groups; /* of the row, in the first corner's arrays */
-    float x, given;
-    unsigned cell; /* as far as it is known, counted from the low end */
-    hairlut_found *found;
-} hairlut_strand_search;
-
-/* The block of cells. Of at most five small ones, four texels are the ends of all but the last. */
-HAIRLUT_INLINE unsigned hairlut_strand_block(const hairlut_strand_search *s, int n)
+/* hairlut_axis_count_large */
+static HAIRLUT_APART unsigned hairlut_strand_count_large(const hairlut_strand_search *s, const float *group, hairlut_oct t,
+                                                         hairlut_oct x)
 {
-    const hairlut_axis *axis = s->table.axis;
-    const hairlut_quad t = s->row->t, x = hairlut_quad_all(s->x);
-    if (axis->columns <= 5 * HAIRLUT_SMALL_GROUP + 1)
-        return HAIRLUT_SMALL_GROUP * hairlut_quad_count(hairlut_strand_texels(&s->table, s->groups, t, 1, n), x);
-    if (HAIRLUT_IS_SMALL(axis->columns))
-        return HAIRLUT_SMALL_GROUP * hairlut_strand_count(&s->table, s->groups, t, x, HAIRLUT_SMALL_GROUP, n);
-    return (unsigned)axis->step * hairlut_strand_count(&s->table, s->groups, t, x, HAIRLUT_GROUP, n);
+    return hairlut_oct_count(hairlut_strand_texels(s, group, t), x) +
+           hairlut_oct_count(hairlut_strand_texels(s, group + 8, t), x);
 }
 
-/* hairlut_halve of blended rows; `groups` are those of the first corner. */
-static inline unsigned hairlut_strand_halve(const hairlut_blended *table, const float *groups, hairlut_quad t, float x)
+/* hairlut_halve */
+static HAIRLUT_APART unsigned hairlut_strand_halve(const hairlut_strand_search *s, const float *groups, hairlut_oct t)
 {
     unsigned first = 0;
-    for (unsigned part = (unsigned)table->axis->step / 2; part >= HAIRLUT_GROUP; part /= 2) {
-        const float *low_end = groups + first + part - 4; /* its last float is that of the upper half */
-        first += hairlut_quad_last(hairlut_strand_texels(table, low_end, t, 0, table->nodes->count)) <= x ? part : 0;
+    for (unsigned part = (unsigned)s->table->axis->step / 2; part >= HAIRLUT_GROUP; part /= 2) {
+        const float *low_end = groups + first + part - 8; /* its last float is that of the upper half */
+        const hairlut_quad last = hairlut_oct_high(hairlut_strand_texels(s, low_end, t));
+        first += hairlut_quad_last(last) <= s->x ? part : 0;
     }
     return first;
 }
 
-/* The cell, from its block on. */
-HAIRLUT_INLINE unsigned hairlut_strand_cell_of(const hairlut_strand_search *s, int n)
+/* hairlut_axis_blend of blended cells: the two rows of a cell stand side by side, and so do their weights. */
+HAIRLUT_INLINE hairlut_quad hairlut_strand_cell(const hairlut_strand_search *s, const float *p, int n)
 {
-    const hairlut_quad t = s->row->t, x = hairlut_quad_all(s->x);
-    const float *groups = s->groups + HAIRLUT_LINE;
-    if (HAIRLUT_IS_SMALL(s->table.axis->columns))
-        return s->cell + hairlut_strand_count(&s->table, groups + 2 * (size_t)s->cell, t, x, HAIRLUT_SMALL_GROUP, n);
-    const unsigned first = s->cell + hairlut_strand_halve(&s->table, groups + s->cell, t, s->x);
-    return first + hairlut_strand_count(&s->table, groups + first, t, x, HAIRLUT_GROUP, n);
+    const hairlut_oct rows = hairlut_oct_mul(hairlut_oct_of(s->row->below, s->row->above), hairlut_blend_oct(s, p, n));
+    return hairlut_quad_add(hairlut_oct_low(rows), hairlut_oct_high(rows));
 }
 
-/* hairlut_axis_blend of blended cells */
-HAIRLUT_INLINE hairlut_quad hairlut_strand_cell(const hairlut_blended *table, const hairlut_row *row, const float *p, int n)
+/* Finds the block of cells of an angle; in a table of few columns, the cell. */
+HAIRLUT_INLINE void hairlut_strand_begin_search(hairlut_strand_search *s, float given, int n)
 {
-    return hairlut_quad_add(hairlut_quad_mul(row->below, hairlut_blend_quad(table, p, n)),
-                            hairlut_quad_mul(row->above, hairlut_blend_quad(table, p + HAIRLUT_CELL, n)));
+    const hairlut_strand_table *table = s->table;
+    const float x = hairlut_clamp(given, table->low, table->high);
+    const float *groups = table->rows + s->first + (unsigned)s->row->j * (unsigned)table->stride;
+    const hairlut_oct all = hairlut_oct_all(x), t = hairlut_oct_of(s->row->t, s->row->t);
+    unsigned cell = 0;
+    s->groups = groups;
+    s->x = x;
+    s->given = given;
+    for (int g = 1; g <= table->groups; ++g)
+        cell += hairlut_strand_count_eight(s, groups + g * HAIRLUT_LINE, t, all, n);
+    if (table->groups == 0)
+        cell = table->small ? HAIRLUT_SMALL_GROUP * hairlut_strand_count_eight(s, groups, t, all, n)
+                            : (unsigned)table->axis->step * hairlut_strand_count_large(s, groups, t, all);
+    s->cell = cell;
+}
+
+/* Finds the cell. */
+HAIRLUT_INLINE void hairlut_strand_end_search(hairlut_strand_search *s, int n)
+{
+    const hairlut_oct all = hairlut_oct_all(s->x), t = hairlut_oct_of(s->row->t, s->row->t);
+    const float *groups = s->groups + HAIRLUT_LINE;
+    unsigned cell = s->cell;
+    if (s->table->groups > 0)
+        return;
+    if (s->table->small) {
+        cell += hairlut_strand_count_eight(s, groups + 2 * (size_t)cell, t, all, n);
+    } else {
+        cell += hairlut_strand_halve(s, groups + cell, t);
+        cell += hairlut_strand_count_large(s, groups + cell, t, all);
+    }
+    s->cell = cell;
 }
 
 /* hairlut_axis_find from the search on */
-HAIRLUT_INLINE hairlut_found hairlut_strand_read(const hairlut_strand_search *s, int n)
+HAIRLUT_INLINE void hairlut_strand_read(const hairlut_strand_search *s, hairlut_found *found, int n)
 {
-    const hairlut_axis *axis = s->table.axis;
-    const hairlut_link *link = axis->links + s->cell;
-    const float *p = axis->ends[0] + s->table.first + (link->offset + HAIRLUT_CELL * (unsigned)s->row->j);
-    const hairlut_found found = {s->x, s->given, link->h, hairlut_strand_cell(&s->table, s->row, p, n)};
-    return found;
-}
-
-HAIRLUT_INLINE void hairlut_strand_begin_search(hairlut_strand_search *s, hairlut_blended table, const hairlut_row *row,
-                                                float given, hairlut_found *found, int n)
-{
-    s->table = table;
-    s->row = row;
-    s->groups = table.axis->rows + table.first + (unsigned)row->j * (unsigned)table.axis->stride;
-    s->x = hairlut_axis_inside(table.axis, given);
-    s->given = given;
-    s->found = found;
-    s->cell = hairlut_strand_block(s, n > 0 ? n : table.nodes->count);
-}
-
-/* The rest of all that were begun, to their places. */
-HAIRLUT_INLINE void hairlut_strand_end_searches(hairlut_strand_search *search, int count, int n)
-{
-    for (hairlut_strand_search *s = search; s < search + count; ++s)
-        s->cell = hairlut_strand_cell_of(s, n > 0 ? n : s->table.nodes->count);
-    for (const hairlut_strand_search *s = search; s < search + count; ++s)
-        *s->found = hairlut_strand_read(s, n > 0 ? n : s->table.nodes->count);
+    const hairlut_link *link = s->table->links + s->cell;
+    const float *p = s->table->cells + s->first + (link->offset + HAIRLUT_CELL * (unsigned)s->row->j);
+    found->x = s->x;
+    found->given = s->given;
+    found->h = link->h;
+    found->cell = hairlut_strand_cell(s, p, n);
 }
 
 /* hairlut_axis_find_place */
-static inline hairlut_placed hairlut_strand_find_place(const hairlut_blended *table, const hairlut_row *row, float u)
+HAIRLUT_INLINE hairlut_placed hairlut_strand_find_place(const hairlut_strand_search *s, float u, int n)
 {
-    const hairlut_place place = hairlut_axis_place(table->axis, u);
-    const float *p = hairlut_axis_placed_cell(table->axis, row, place) + table->first;
-    const hairlut_placed placed = {hairlut_strand_cell(table, row, p, table->nodes->count),
-                                   hairlut_quad_load(table->axis->knots + HAIRLUT_KNOT * place.i), place.m};
+    const hairlut_axis *axis = s->table->axis;
+    const hairlut_place place = hairlut_axis_place(axis, u);
+    const float *p = hairlut_axis_placed_cell(axis, s->row, place) + (s->table->pitch + s->first);
+    const hairlut_placed placed = {hairlut_strand_cell(s, p, n), hairlut_quad_load(axis->knots + HAIRLUT_KNOT * place.i),
+                                   place.m};
     return placed;
 }
 

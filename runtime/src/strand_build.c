@@ -71,7 +71,7 @@ static int is_scale(const hairlut_scale *scale, const hairlut_parameter_nodes *a
     return 1;
 }
 
-static int add_scale(hairlut_strands *strands, const hairlut_parameter_nodes *axis, float **memory)
+static const hairlut_scale *add_scale(hairlut_strands *strands, const hairlut_parameter_nodes *axis, float **memory)
 {
     int s = 0;
     while (s < strands->scale_count && !is_scale(&strands->scales[s], axis))
@@ -81,7 +81,7 @@ static int add_scale(hairlut_strands *strands, const hairlut_parameter_nodes *ax
         *memory = hairlut_build_nodes(&strands->scales[s].nodes, axis->values, axis->count, *memory);
         ++strands->scale_count;
     }
-    return s;
+    return &strands->scales[s];
 }
 
 /* ---- grids ---------------------------------------------------------------------------------------------------- */
@@ -129,11 +129,8 @@ hairlut_corners hairlut_only_corner(void)
 
 hairlut_corners hairlut_standard_corners(const hairlut_strands *strands, int grid)
 {
-    hairlut_node places[HAIRLUT_MOST_SCALES];
     hairlut_corners corners;
-    for (int s = 0; s < strands->scale_count; ++s)
-        places[s] = hairlut_nodes_place(&strands->scales[s].nodes, strands->standard[strands->scales[s].parameter]);
-    hairlut_corners_of(&strands->grids[grid], places, strands->grids[grid].axis_count, &corners);
+    hairlut_corners_of(&strands->grids[grid], strands->standard, &corners);
     return corners;
 }
 
@@ -154,4 +151,36 @@ float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_de
     hairlut_add_grid(strands, NULL, 0, &memory); /* number 0 */
     strands->pairs = 1;
     return memory;
+}
+
+/* ---- tables --------------------------------------------------------------------------------------------------- */
+
+static void build_strand_table(hairlut_strands *strands, const hairlut_axis *axis, hairlut_strand_table *table)
+{
+    const ptrdiff_t pitch = table->nodes.pitch;
+    table->rows = axis->rows + pitch;
+    table->cells = axis->ends[0] + pitch;
+    table->links = axis->links;
+    table->pitch = pitch;
+    table->second = table->nodes.corner[1];
+    table->low = axis->low;
+    table->high = axis->high;
+    table->stride = axis->stride;
+    table->small = HAIRLUT_IS_SMALL(axis->columns);
+    table->groups = axis->columns <= HAIRLUT_FLAT_COLUMNS ? (axis->columns - 2 + 7) / 8 : 0;
+    table->grid = axis->grid;
+    table->axis = axis;
+    strands->row_axes[axis->grid] = axis;
+    if (axis->grid >= strands->row_count)
+        strands->row_count = axis->grid + 1;
+}
+
+void hairlut_build_strand_tables(hairlut_strands *strands, const hairlut_lobe *lobes, int lobe_count)
+{
+    for (int k = 0; k < lobe_count; ++k) {
+        strands->sign[k] = lobes[k].sign;
+        build_strand_table(strands, &lobes[k].theta, &strands->theta[k]);
+        if (!lobes[k].uniform)
+            build_strand_table(strands, &lobes[k].phi, &strands->phi[k]);
+    }
 }

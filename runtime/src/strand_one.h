@@ -1,164 +1,209 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The whole hair of one strand: one.h, of tables and a mixture that are blended over the strand's parameters first. */
+/* The whole hair of one strand: one.h, of tables and a mixture that are blended over the strand's parameters. */
 #ifndef HAIRLUT_STRAND_ONE_H
 #define HAIRLUT_STRAND_ONE_H
 
 #include "one.h"
 #include "strand_axis.h"
 
-/* What a call reads: the corners of each grid of nodes, and the mixture there. */
+/* A strand: the corners of each grid of nodes, and the mixture there. */
 typedef struct strand {
-    const hairlut_model *model;
     hairlut_corners corners[HAIRLUT_MOST_GRIDS];
     hairlut_mix mix;
     int known; /* no parameter is NaN */
 } strand;
 
-/* hairlut_corners_of, compiled once for each number of axes that is common. */
-static inline void place_corners(const hairlut_node_grid *grid, const hairlut_node *places, hairlut_corners *corners)
-{
-    switch (grid->axis_count) {
-    case 0:
-        hairlut_corners_of(grid, places, 0, corners);
-        break;
-    case 1:
-        hairlut_corners_of(grid, places, 1, corners);
-        break;
-    case 3:
-        hairlut_corners_of(grid, places, 3, corners);
-        break;
-    default:
-        hairlut_corners_of(grid, places, grid->axis_count, corners);
-    }
-}
+/* What a call reads: tables at a strand, and the rows of theta_r on each grid of rows. */
+typedef struct strand_view {
+    const hairlut_model *model;
+    const hairlut_corners *corners;
+    const hairlut_mix *mix;
+    direction d;
+    hairlut_row rows[HAIRLUT_MOST_TABLES];
+} strand_view;
 
 static void place_strand(const hairlut_model *model, const float *parameters, strand *s)
 {
     const hairlut_strands *strands = model->strands;
-    hairlut_node places[HAIRLUT_MOST_SCALES];
-    s->model = model;
-    s->known = 1;
-    for (int p = 0; p < strands->parameter_count; ++p)
-        s->known &= parameters[p] == parameters[p];
-    for (int k = 0; k < strands->scale_count; ++k) {
-        const int p = strands->scales[k].parameter;
-        places[k] = hairlut_nodes_place(&strands->scales[k].nodes,
-                                        hairlut_clamp(parameters[p], strands->least[p], strands->most[p]));
+    float clamped[HAIRLUT_MAX_PARAMETERS];
+    int known = 1;
+    for (int p = 0; p < strands->parameter_count; ++p) {
+        known &= parameters[p] == parameters[p];
+        clamped[p] = hairlut_clamp(parameters[p], strands->least[p], strands->most[p]);
     }
     for (int g = 0; g < strands->grid_count; ++g)
-        place_corners(&strands->grids[g], places, &s->corners[g]);
+        hairlut_corners_of(&strands->grids[g], clamped, &s->corners[g]);
+    s->known = known;
 }
 
-static void mix_strand(strand *s, const float *shares, float theta_r, float offset)
+static void mix_strand(const hairlut_model *model, const float *shares, float theta_r, float offset, strand *s)
 {
-    hairlut_mixture_fill(s->model, &s->corners[s->model->strands->mixture.grid], shares, theta_r, offset, &s->mix);
+    hairlut_mixture_fill(model, &s->corners[model->strands->mixture.grid], shares, theta_r, offset, &s->mix);
+}
+
+/* All but the direction d.theta_i, d.i. */
+static inline void view_strand(const hairlut_model *model, const strand *s, float theta_r, float phi_r, strand_view *v)
+{
+    v->model = model;
+    v->corners = s->corners;
+    v->mix = &s->mix;
+    v->d.theta_r = theta_r;
+    v->d.r = hairlut_wrap(phi_r, -hairlut_pi);
+    for (int g = 0; g < model->strands->row_count; ++g)
+        v->rows[g] = hairlut_axis_row(model->strands->row_axes[g], theta_r);
+}
+
+HAIRLUT_INLINE void start_search(const strand_view *v, const hairlut_strand_table *table, hairlut_strand_search *s)
+{
+    hairlut_strand_start(s, table, v->rows, v->corners);
 }
 
 /* hairlut_lobe_draw */
-static hairlut_drawn draw_strand(const strand *s, int k, float theta_r, float u_theta, float u_phi)
+HAIRLUT_INLINE hairlut_drawn draw_strand(const strand_view *v, int k, float u_theta, float u_phi)
 {
-    const hairlut_lobe *lobe = &s->model->lobes[k];
-    const hairlut_strands *strands = s->model->strands;
-    const hairlut_blended theta = hairlut_blended_table(&lobe->theta, &strands->theta[k], s->corners),
-                          phi = hairlut_blended_table(&lobe->phi, &strands->phi[k], s->corners);
-    const hairlut_row row = hairlut_axis_row(&lobe->theta, theta_r);
-    const hairlut_placed a = hairlut_strand_find_place(&theta, &row, u_theta);
-    if (lobe->uniform)
+    hairlut_strand_search theta, phi;
+    start_search(v, &v->model->strands->theta[k], &theta);
+    const hairlut_placed a = hairlut_strand_find_place(&theta, u_theta, theta.table->nodes.count);
+    if (v->model->lobes[k].uniform)
         return hairlut_draw_uniform(&a, u_phi);
-    const hairlut_row phi_row = hairlut_phi_row(lobe, theta_r, &row);
-    const hairlut_placed b = hairlut_strand_find_place(&phi, &phi_row, u_phi);
+    start_search(v, &v->model->strands->phi[k], &phi);
+    const hairlut_placed b = hairlut_strand_find_place(&phi, u_phi, phi.table->nodes.count);
     return hairlut_draw_both(&a, &b);
 }
 
-/* The direction on the axes of `count` lobes, two places a lobe. Tables have n corners, or any number where n is 0. All searches
- * are begun before one is ended, so that their loads overlap. */
-HAIRLUT_INLINE void find_strand_of(const strand *s, const direction *d, const int *lobes, int count, hairlut_found *found,
-                                   int n)
+/* hairlut_wrap_near of four, with low = 0 */
+static inline void wrap_four(hairlut_quad x, float *wrapped)
+{
+    const hairlut_quad integers = hairlut_quad_all(hairlut_integers), high = hairlut_quad_all(hairlut_two_pi_high),
+                       low = hairlut_quad_all(hairlut_two_pi_low), most = hairlut_quad_all(hairlut_below_two_pi);
+    const hairlut_quad turns =
+        hairlut_quad_add(hairlut_quad_mul(x, hairlut_quad_all(hairlut_inverse_two_pi)), hairlut_quad_all(hairlut_half_down));
+    const hairlut_quad n = hairlut_quad_sub(hairlut_quad_add(turns, integers), integers);
+    const hairlut_quad near = hairlut_quad_sub(hairlut_quad_sub(x, hairlut_quad_mul(n, high)), hairlut_quad_mul(n, low));
+    hairlut_quad_store(wrapped, near);
+    if (hairlut_quad_count(hairlut_quad_all(0.0f), near) + hairlut_quad_count(near, most) < 8)
+        for (int l = 0; l < 4; ++l)
+            wrapped[l] = hairlut_wrap(wrapped[l], 0.0f);
+}
+
+/* hairlut_table_azimuth of all lobes */
+static inline void table_azimuths(const strand_view *v, float *azimuth)
+{
+    const hairlut_quad i = hairlut_quad_all(v->d.i), r = hairlut_quad_all(v->d.r), side = hairlut_quad_all(v->mix->side);
+    for (int k = 0; k < v->model->lobe_count; k += 4) {
+        const hairlut_quad relative =
+            hairlut_quad_add(i, hairlut_quad_mul(hairlut_quad_anywhere(v->model->strands->sign + k), r));
+        const hairlut_quad x = hairlut_quad_sub(hairlut_quad_mul(side, relative), hairlut_quad_anywhere(v->mix->turn + k));
+        wrap_four(x, azimuth + k);
+    }
+}
+
+/* Where the direction lies on the axes of lobe k is found by two searches, which are begun; of a uniform azimuth, the second is not
+ * used. Tables have n corners, or any number where n is 0. */
+HAIRLUT_INLINE void begin_lobe(const strand_view *v, int k, float azimuth, hairlut_strand_search search[2], int n)
+{
+    start_search(v, &v->model->strands->theta[k], &search[0]);
+    hairlut_strand_begin_search(&search[0], v->d.theta_i, n > 0 ? n : search[0].table->nodes.count);
+    if (v->model->lobes[k].uniform)
+        return;
+    start_search(v, &v->model->strands->phi[k], &search[1]);
+    hairlut_strand_begin_search(&search[1], azimuth, n > 0 ? n : search[1].table->nodes.count);
+}
+
+HAIRLUT_INLINE void end_lobe(hairlut_strand_search search[2], int uniform, int n)
+{
+    hairlut_strand_end_search(&search[0], n > 0 ? n : search[0].table->nodes.count);
+    if (!uniform)
+        hairlut_strand_end_search(&search[1], n > 0 ? n : search[1].table->nodes.count);
+}
+
+HAIRLUT_INLINE void read_lobe(const hairlut_strand_search search[2], int uniform, hairlut_found found[2], int n)
+{
+    hairlut_strand_read(&search[0], &found[0], n > 0 ? n : search[0].table->nodes.count);
+    if (uniform)
+        found[1] = hairlut_find_uniform();
+    else
+        hairlut_strand_read(&search[1], &found[1], n > 0 ? n : search[1].table->nodes.count);
+}
+
+/* pdf plus the sum of weight * density over the lobes that have a weight, but for the one in place `out`, as in `mixed`. */
+HAIRLUT_INLINE float mixed_of(const strand_view *v, int out, float pdf, int n)
 {
     hairlut_strand_search searches[2 * HAIRLUT_MAX_LOBES];
-    hairlut_row rows[2 * HAIRLUT_MAX_LOBES + 1], *row = rows;
-    int begun = 0;
-    for (int l = 0, grid = -1; l < count; ++l, found += 2) {
-        const int k = lobes[l];
-        const hairlut_lobe *lobe = &s->model->lobes[k];
-        const hairlut_strands *strands = s->model->strands;
-        if (lobe->theta.grid != grid)
-            *++row = hairlut_axis_row(&lobe->theta, d->theta_r);
-        grid = lobe->theta.grid;
-        hairlut_strand_begin_search(&searches[begun++], hairlut_blended_table(&lobe->theta, &strands->theta[k], s->corners),
-                                    row, d->theta_i, &found[0], n);
-        if (lobe->uniform) {
-            found[1] = hairlut_find_uniform();
-            continue;
-        }
-        if (lobe->phi.grid != grid)
-            *++row = hairlut_axis_row(&lobe->phi, d->theta_r);
-        grid = lobe->phi.grid;
-        hairlut_strand_begin_search(&searches[begun++], hairlut_blended_table(&lobe->phi, &strands->phi[k], s->corners), row,
-                                    hairlut_table_azimuth(lobe, d->r, d->i, s->mix.turn[k], s->mix.side), &found[1], n);
+    const hairlut_mix *mix = v->mix;
+    const hairlut_lobe *lobes = v->model->lobes;
+    const int count = mix->count - (out < mix->count);
+    float azimuth[HAIRLUT_MAX_LOBES];
+    hairlut_found found[4];
+    table_azimuths(v, azimuth);
+    for (int l = 0; l < count; ++l) {
+        const int k = lobe_but(mix, l, out);
+        begin_lobe(v, k, azimuth[k], searches + 2 * l, n);
     }
-    hairlut_strand_end_searches(searches, begun, n);
-}
-
-static void find_strand(const strand *s, const direction *d, const int *lobes, int count, hairlut_found *found)
-{
-    if (s->model->strands->pairs)
-        find_strand_of(s, d, lobes, count, found, 2);
-    else
-        find_strand_of(s, d, lobes, count, found, 0);
-}
-
-/* pdf plus the sum of weight * density over the lobes that have a weight, but for lobe `drawn`. */
-static float mixed_strand(const strand *s, const direction *d, int drawn, float pdf)
-{
-    hairlut_found found[2 * HAIRLUT_MAX_LOBES + 2];
-    int lobes[HAIRLUT_MAX_LOBES + 1] = {0}, count = 0;
-    for (int n = 0; n < s->mix.count; ++n) {
-        lobes[count] = s->mix.lobes[n];
-        count += lobes[count] != drawn;
-    }
-    find_strand(s, d, lobes, count, found);
-    if (count % 2) { /* two at a time: the last beside itself */
-        found[2 * count] = found[2 * count - 2];
-        found[2 * count + 1] = found[2 * count - 1];
-    }
-    for (int n = 0; n < count; n += 2) {
-        const hairlut_quad density = hairlut_densities(found + 2 * n);
-        pdf += s->mix.weight[lobes[n]] * hairlut_quad_first(density);
-        if (n + 1 < count)
-            pdf += s->mix.weight[lobes[n + 1]] * hairlut_quad_third(density);
+    for (int l = 0; l < count; ++l)
+        end_lobe(searches + 2 * l, lobes[lobe_but(mix, l, out)].uniform, n);
+    for (int l = 0; l < count; l += 2) {
+        const int k = lobe_but(mix, l, out);
+        read_lobe(searches + 2 * l, lobes[k].uniform, found, n);
+        if (l + 1 < count)
+            read_lobe(searches + 2 * l + 2, lobes[lobe_but(mix, l + 1, out)].uniform, found + 2, n);
+        else
+            read_lobe(searches + 2 * l, lobes[k].uniform, found + 2, n);
+        const hairlut_quad density = hairlut_densities(found);
+        pdf += mix->weight[k] * hairlut_quad_first(density);
+        if (l + 1 < count)
+            pdf += mix->weight[lobe_but(mix, l + 1, out)] * hairlut_quad_third(density);
     }
     return pdf;
+}
+
+/* For any number of corners: apart, as it would crowd the other out of the instruction cache. */
+static HAIRLUT_APART float mixed_any(const strand_view *v, int out, float pdf)
+{
+    return mixed_of(v, out, pdf, 0);
+}
+
+static float mixed_strand(const strand_view *v, int out, float pdf)
+{
+    return v->model->strands->pairs ? mixed_of(v, out, pdf, 2) : mixed_any(v, out, pdf);
 }
 
 static hairlut_sample sample_strand_one(const hairlut_model *model, const float *parameters, const float *shares,
                                         float theta_r, float phi_r, float offset, float u_lobe, float u_theta, float u_phi)
 {
     strand s;
+    strand_view v;
     place_strand(model, parameters, &s);
-    mix_strand(&s, shares, theta_r, offset);
-    const int k = s.mix.lobes[hairlut_mixture_choose(&s.mix, u_lobe)];
+    view_strand(model, &s, theta_r, phi_r, &v);
+    mix_strand(model, shares, theta_r, offset, &s);
+    const int chosen = hairlut_mixture_choose(&s.mix, u_lobe), k = s.mix.lobes[chosen];
     const hairlut_lobe *lobe = &model->lobes[k];
-    const hairlut_drawn drawn = draw_strand(&s, k, theta_r, u_theta, u_phi);
-    const float theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta), r = hairlut_wrap(phi_r, -hairlut_pi);
-    const float phi_i = lobe->uniform ? drawn.phi : hairlut_incident_azimuth(lobe, r, drawn.phi, s.mix.turn[k], s.mix.side);
+    const hairlut_drawn drawn = draw_strand(&v, k, u_theta, u_phi);
+    const float theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta);
+    const float phi_i =
+        lobe->uniform ? drawn.phi : hairlut_incident_azimuth(lobe, v.d.r, drawn.phi, s.mix.turn[k], s.mix.side);
     const int valid =
         s.known && hairlut_known(theta_r, phi_r, u_theta, u_phi) && !isunordered(offset, u_lobe) && s.mix.sum > 0.0f;
-    const direction d = {theta_r, r, theta_i, phi_i};
-    return hairlut_finish(theta_i, phi_i, valid ? mixed_strand(&s, &d, k, s.mix.weight[k] * drawn.pdf) : 0.0f);
+    if (!valid)
+        return hairlut_finish(theta_i, phi_i, 0.0f);
+    v.d.theta_i = theta_i;
+    v.d.i = phi_i;
+    return hairlut_finish(theta_i, phi_i, mixed_strand(&v, chosen, s.mix.weight[k] * drawn.pdf));
 }
 
 static float pdf_strand_one(const hairlut_model *model, const float *parameters, const float *shares, float theta_r,
                             float phi_r, float offset, float theta_i, float phi_i)
 {
     strand s;
+    strand_view v;
     place_strand(model, parameters, &s);
-    mix_strand(&s, shares, theta_r, offset);
-    if (!s.known || !hairlut_known(theta_r, phi_r, theta_i, phi_i) || !hairlut_is_finite(phi_i) || offset != offset ||
-        !(s.mix.sum > 0.0f))
+    mix_strand(model, shares, theta_r, offset, &s);
+    if (!s.known || !hairlut_known(theta_r, phi_r, theta_i, phi_i - phi_i + offset) || !(s.mix.sum > 0.0f))
         return 0.0f;
-    const direction d = {theta_r, hairlut_wrap(phi_r, -hairlut_pi), theta_i, hairlut_wrap(phi_i, -hairlut_pi)};
-    return mixed_strand(&s, &d, -1, 0.0f);
+    view_strand(model, &s, theta_r, phi_r, &v);
+    v.d.theta_i = theta_i;
+    v.d.i = hairlut_wrap(phi_i, -hairlut_pi);
+    return mixed_strand(&v, s.mix.count, 0.0f);
 }
 
 #endif

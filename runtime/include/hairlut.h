@@ -324,8 +324,7 @@ HAIRLUT_API void hairlut_sample_hair_n(const hairlut_model *model, size_t n, con
 HAIRLUT_API void hairlut_pdf_hair_n(const hairlut_model *model, size_t n, const float *shares, const float *theta_r,
                                     const float *phi_r, const float *offset, const float *theta_i, const float *phi_i,
                                     float *pdf_angle);
-/* parameters: NULL for the standard values, or parameter_count * n floats, those of parameter p from p * n on. On a model over
- * parameters these two compute one direction after the other where `parameters` is not NULL. */
+/* parameters: NULL for the standard values, or parameter_count * n floats, those of parameter p from p * n on. */
 HAIRLUT_API void hairlut_sample_strand_n(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
                                          const float *theta_r, const float *phi_r, const float *offset, const float *u_lobe,
                                          const float *u_theta, const float *u_phi, hairlut_samples out);

@@ -42,6 +42,13 @@ typedef struct hairlut_batch {
                         hairlut_samples out);
     void (*pdf_hair)(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
                      const float *offset, const float *theta_i, const float *phi_i, float *pdf_angle);
+    /* of a model over parameters, which are not NULL */
+    void (*sample_strand)(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
+                          const float *theta_r, const float *phi_r, const float *offset, const float *u_lobe,
+                          const float *u_theta, const float *u_phi, hairlut_samples out);
+    void (*pdf_strand)(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
+                       const float *theta_r, const float *phi_r, const float *offset, const float *theta_i,
+                       const float *phi_i, float *pdf_angle);
 } hairlut_batch;
 
 /* Stores sample i of an array. */

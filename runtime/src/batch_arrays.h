@@ -97,7 +97,8 @@ static inline const float *from_on(const float *array, size_t s)
 
 static inline hair_inputs inputs_from(const hair_inputs *in, size_t s)
 {
-    const hair_inputs rest = {{from_on(in->given.shares, s), in->given.stride},
+    const hair_inputs rest = {{from_on(in->strands.values, s), in->strands.stride},
+                              {from_on(in->given.shares, s), in->given.stride},
                               in->theta_r + s,
                               in->phi_r + s,
                               from_on(in->offset, s),
@@ -111,7 +112,7 @@ static inline hair_inputs inputs_from(const hair_inputs *in, size_t s)
 
 /* The inputs of a vector, of which the first n are the caller's. */
 typedef struct few_inputs {
-    float shares[HAIRLUT_MAX_LOBES][LANES], rest[8][LANES];
+    float parameters[HAIRLUT_MAX_PARAMETERS][LANES], shares[HAIRLUT_MAX_LOBES][LANES], rest[8][LANES];
 } few_inputs;
 
 static inline const float *pad_one(float padded[LANES], const float *from, size_t n)
@@ -121,13 +122,21 @@ static inline const float *pad_one(float padded[LANES], const float *from, size_
     return from ? padded : NULL;
 }
 
-static inline hair_inputs pad_inputs(few_inputs *few, const hair_inputs *in, int lobe_count, size_t n)
+/* `count` arrays, each `stride` behind the one before; NULL for NULL */
+static inline const float *pad_all(float padded[][LANES], const float *from, size_t stride, int count, size_t n)
+{
+    for (int k = 0; from && k < count; ++k)
+        pad(padded[k], from + (size_t)k * stride, n);
+    return from ? padded[0] : NULL;
+}
+
+static inline hair_inputs pad_inputs(few_inputs *few, const hair_inputs *in, const hairlut_model *model, size_t n)
 {
     hair_inputs padded;
-    for (int k = 0; in->given.shares && k < lobe_count; ++k)
-        pad(few->shares[k], in->given.shares + (size_t)k * in->given.stride, n);
-    padded.given.shares = in->given.shares ? few->shares[0] : NULL;
-    padded.given.stride = LANES;
+    const int parameters = model->strands ? model->strands->parameter_count : 0;
+    padded.strands.values = pad_all(few->parameters, in->strands.values, in->strands.stride, parameters, n);
+    padded.given.shares = pad_all(few->shares, in->given.shares, in->given.stride, model->lobe_count, n);
+    padded.strands.stride = padded.given.stride = LANES;
     padded.theta_r = pad_one(few->rest[0], in->theta_r, n);
     padded.phi_r = pad_one(few->rest[1], in->phi_r, n);
     padded.offset = pad_one(few->rest[2], in->offset, n);
@@ -139,41 +148,71 @@ static inline hair_inputs pad_inputs(few_inputs *few, const hair_inputs *in, int
     return padded;
 }
 
+/* `strands` is room for the strands of a block; NULL without parameters. */
+static void sample_all(const hairlut_model *model, size_t n, const hair_inputs *in, strand_block *strands,
+                       hairlut_samples out)
+{
+    for (size_t s = 0, m = part_size(n); s < n; s += m, m = part_size(n - s)) {
+        const hair_inputs here = inputs_from(in, s);
+        if (m < LANES) {
+            few_inputs few_in;
+            few_results few;
+            const hair_inputs padded = pad_inputs(&few_in, &here, model, m);
+            sample_hair_block(model, LANES, &padded, strands, into(&few));
+            copy_out(samples_from(out, s), &few, m);
+        } else {
+            sample_hair_block(model, m, &here, strands, samples_from(out, s));
+        }
+    }
+}
+
+static void pdf_all(const hairlut_model *model, size_t n, const hair_inputs *in, strand_block *strands, float *pdf_angle)
+{
+    for (size_t s = 0, m = part_size(n); s < n; s += m, m = part_size(n - s)) {
+        const hair_inputs here = inputs_from(in, s);
+        if (m < LANES) {
+            few_inputs few_in;
+            float result[LANES];
+            const hair_inputs padded = pad_inputs(&few_in, &here, model, m);
+            pdf_hair_block(model, LANES, &padded, strands, result);
+            copy(pdf_angle + s, result, m);
+        } else {
+            pdf_hair_block(model, m, &here, strands, pdf_angle + s);
+        }
+    }
+}
+
 static void sample_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
                         const float *offset, const float *u_lobe, const float *u_theta, const float *u_phi,
                         hairlut_samples out)
 {
-    const hair_inputs in = {{shares, n}, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, NULL, NULL};
-    for (size_t s = 0, m = part_size(n); s < n; s += m, m = part_size(n - s)) {
-        const hair_inputs here = inputs_from(&in, s);
-        if (m < LANES) {
-            few_inputs few_in;
-            few_results few;
-            const hair_inputs padded = pad_inputs(&few_in, &here, model->lobe_count, m);
-            sample_hair_block(model, LANES, &padded, into(&few));
-            copy_out(samples_from(out, s), &few, m);
-        } else {
-            sample_hair_block(model, m, &here, samples_from(out, s));
-        }
-    }
+    const hair_inputs in = {{NULL, 0}, {shares, n}, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, NULL, NULL};
+    sample_all(model, n, &in, NULL, out);
 }
 
 static void pdf_hair(const hairlut_model *model, size_t n, const float *shares, const float *theta_r, const float *phi_r,
                      const float *offset, const float *theta_i, const float *phi_i, float *pdf_angle)
 {
-    const hair_inputs in = {{shares, n}, theta_r, phi_r, offset, NULL, NULL, NULL, theta_i, phi_i};
-    for (size_t s = 0, m = part_size(n); s < n; s += m, m = part_size(n - s)) {
-        const hair_inputs here = inputs_from(&in, s);
-        if (m < LANES) {
-            few_inputs few_in;
-            float result[LANES];
-            const hair_inputs padded = pad_inputs(&few_in, &here, model->lobe_count, m);
-            pdf_hair_block(model, LANES, &padded, result);
-            copy(pdf_angle + s, result, m);
-        } else {
-            pdf_hair_block(model, m, &here, pdf_angle + s);
-        }
-    }
+    const hair_inputs in = {{NULL, 0}, {shares, n}, theta_r, phi_r, offset, NULL, NULL, NULL, theta_i, phi_i};
+    pdf_all(model, n, &in, NULL, pdf_angle);
+}
+
+static void sample_strand(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
+                          const float *theta_r, const float *phi_r, const float *offset, const float *u_lobe,
+                          const float *u_theta, const float *u_phi, hairlut_samples out)
+{
+    const hair_inputs in = {{parameters, n}, {shares, n}, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, NULL, NULL};
+    strand_block strands;
+    sample_all(model, n, &in, &strands, out);
+}
+
+static void pdf_strand(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
+                       const float *theta_r, const float *phi_r, const float *offset, const float *theta_i,
+                       const float *phi_i, float *pdf_angle)
+{
+    const hair_inputs in = {{parameters, n}, {shares, n}, theta_r, phi_r, offset, NULL, NULL, NULL, theta_i, phi_i};
+    strand_block strands;
+    pdf_all(model, n, &in, &strands, pdf_angle);
 }
 
 #endif

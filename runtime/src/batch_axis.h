@@ -96,11 +96,10 @@ HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t 
 #endif
 }
 
-/* hairlut_axis_begin_search with groups of `size`: the first cell of the block, and the offset of its first group */
-HAIRLUT_INLINE void search_blocks(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
+/* From the numbers of blocks, of groups of `size`, to the first cell of each, and the offset of its first group */
+static inline void enter_blocks(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
 {
     const int step = axis->step, floats = HAIRLUT_LINE / size * step; /* of a block */
-    count(axis, axis->rows, n, q, size, q->cell);
     for (size_t s = 0; s < n; s += LANES) {
         const whole block = iload(q->cell + s);
         istore(q->cell + s, imul(block, iall(step)));
@@ -119,11 +118,9 @@ static inline void halve_blocks(const hairlut_axis *axis, size_t n, axis_searche
     }
 }
 
-/* The last count, and where to read the cell: hairlut_axis_find */
-HAIRLUT_INLINE void search_groups(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
+/* From the last counts to where to read the cells: hairlut_axis_find */
+HAIRLUT_INLINE void find_cells(const hairlut_axis *axis, size_t n, axis_searches *q, const int *counts)
 {
-    int counts[BLOCK];
-    count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
     for (size_t s = 0; s < n; s += LANES) {
         whole offset;
         real h;
@@ -134,57 +131,68 @@ HAIRLUT_INLINE void search_groups(const hairlut_axis *axis, size_t n, axis_searc
     }
 }
 
-static inline void search_large(const hairlut_axis *axis, size_t n, axis_searches *q)
+/* Searches the cells of all, in groups of `size`. */
+HAIRLUT_INLINE void search(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
 {
-    search_blocks(axis, n, q, HAIRLUT_GROUP);
+    int counts[BLOCK];
+    count(axis, axis->rows, n, q, size, q->cell);
+    enter_blocks(axis, n, q, size);
     halve_blocks(axis, n, q);
-    search_groups(axis, n, q, HAIRLUT_GROUP);
+    count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
+    find_cells(axis, n, q, counts);
 }
 
-/* hairlut_axis_blend; t is that of hairlut_row */
-static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
+/* hairlut_axis_blend, of cells of the row below and of that above; t is that of hairlut_row */
+static inline cells blend_rows(const real p[HAIRLUT_CELL], const real q[HAIRLUT_CELL], real t)
 {
     const real scale = all(HAIRLUT_SCALE), below = mul(scale, sub(all(1.0f), t)), above = mul(scale, t);
-    real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
-    gather4(axis->ends[0], at, p);
-    gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
     const cells cell = {add(mul(below, p[0]), mul(above, q[0])), add(mul(below, p[1]), mul(above, q[1])),
                         add(mul(below, p[2]), mul(above, q[2])), add(mul(below, p[3]), mul(above, q[3]))};
     return cell;
 }
 
-static inline void fetch_samples(const hairlut_axis *axis, size_t n, axis_samples *q)
+static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
 {
-    for (size_t s = 0; s < n; s += LANES) {
-        real knot[HAIRLUT_KNOT];
-        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
-        gather4(axis->knots, q->knot + s, knot);
-        store(q->m + s, mul(sub(load(q->m + s), knot[0]), knot[1]));
-        store(q->rate + s, knot[3]);
-        store(q->x0 + s, cell.x0);
-        store(q->d0 + s, cell.d0);
-        store(q->t + s, cell.w);
-        store(q->d1 + s, cell.d1);
-    }
+    real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
+    gather4(axis->ends[0], at, p);
+    gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
+    return blend_rows(p, q, t);
 }
 
-static inline void search_small(const hairlut_axis *axis, size_t n, axis_searches *q)
+/* The cells of samples s .. s+LANES-1, and their knots */
+static inline void store_samples(const hairlut_axis *axis, axis_samples *q, size_t s, cells cell)
 {
-    search_blocks(axis, n, q, HAIRLUT_SMALL_GROUP);
-    search_groups(axis, n, q, HAIRLUT_SMALL_GROUP);
+    real knot[HAIRLUT_KNOT];
+    gather4(axis->knots, q->knot + s, knot);
+    store(q->m + s, mul(sub(load(q->m + s), knot[0]), knot[1]));
+    store(q->rate + s, knot[3]);
+    store(q->x0 + s, cell.x0);
+    store(q->d0 + s, cell.d0);
+    store(q->t + s, cell.w);
+    store(q->d1 + s, cell.d1);
+}
+
+static inline void fetch_samples(const hairlut_axis *axis, size_t n, axis_samples *q)
+{
+    for (size_t s = 0; s < n; s += LANES)
+        store_samples(axis, q, s, load_cells(axis, q->at + s, load(q->t + s)));
+}
+
+/* The cells of directions s .. s+LANES-1 */
+static inline void store_searches(axis_searches *q, size_t s, cells cell)
+{
+    const real w = magnitude(cell.w);
+    const real beyond = flipped(sub(mul(load(q->x + s), all(HAIRLUT_SCALE)), cell.x0), cell.w);
+    store(q->x + s, clamp(beyond, all(0.0f), w));
+    store(q->d0 + s, magnitude(cell.d0));
+    store(q->t + s, w);
+    store(q->d1 + s, magnitude(cell.d1));
 }
 
 static inline void fetch_searches(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
-    for (size_t s = 0; s < n; s += LANES) {
-        const cells cell = load_cells(axis, q->at + s, load(q->t + s));
-        const real w = magnitude(cell.w);
-        const real beyond = flipped(sub(mul(load(q->x + s), all(HAIRLUT_SCALE)), cell.x0), cell.w);
-        store(q->x + s, clamp(beyond, all(0.0f), w));
-        store(q->d0 + s, magnitude(cell.d0));
-        store(q->t + s, w);
-        store(q->d1 + s, magnitude(cell.d1));
-    }
+    for (size_t s = 0; s < n; s += LANES)
+        store_searches(q, s, load_cells(axis, q->at + s, load(q->t + s)));
 }
 
 /* hairlut_draw_two, of an axis, of samples s .. s+LANES-1 that were placed and fetched */
@@ -216,9 +224,9 @@ static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, 
 static inline void end_search(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     if (HAIRLUT_IS_SMALL(axis->columns))
-        search_small(axis, n, q);
+        search(axis, n, q, HAIRLUT_SMALL_GROUP);
     else
-        search_large(axis, n, q);
+        search(axis, n, q, HAIRLUT_GROUP);
     fetch_searches(axis, n, q);
 }
 

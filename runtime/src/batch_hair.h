@@ -10,8 +10,9 @@
 #include "batch_lobe.h"
 #include "batch_mixture.h"
 
-/* A block's inputs. shares and offset may be NULL. */
+/* A block's inputs. Parameters, shares and offset may be NULL. */
 typedef struct hair_inputs {
+    given_strands strands;
     given_shares given;
     const float *theta_r, *phi_r, *offset;
     const float *u_lobe, *u_theta, *u_phi; /* of samples */
@@ -46,19 +47,20 @@ static inline real azimuth_of(const hairlut_model *model, int k, const direction
 
 /* The density of lobe k of directions from .. from+n-1, to the same places of pdf. What is written beyond, up to a whole vector,
  * is a density too. */
-static inline void range_density(const hairlut_model *model, int k, const directions *d, const mixture_block *m, size_t from,
-                                 size_t n, float *pdf)
+static inline void range_density(const hairlut_model *model, int k, strand_block *strands, const directions *d,
+                                 const mixture_block *m, size_t from, size_t n, float *pdf)
 {
+    const strand_lobe at = lobe_at(strands, k, from);
     float azimuth[BLOCK];
     const size_t padded = whole_vectors(n);
     for (size_t s = 0; s < padded && !model->lobes[k].uniform; s += LANES)
         store(azimuth + s, azimuth_of(model, k, d, m, from + s));
-    lobe_density(&model->lobes[k], padded, d->theta_r + from, d->theta_i + from, azimuth, pdf + from);
+    lobe_density(&model->lobes[k], &at, padded, d->theta_r + from, d->theta_i + from, azimuth, pdf + from);
 }
 
 /* The same of those of the first n that have a share of the lobe and are not in from .. to-1; 0 for the others. */
-static inline void list_density(const hairlut_model *model, int k, const directions *d, const mixture_block *m, size_t n,
-                                size_t from, size_t to, float *pdf)
+static inline void list_density(const hairlut_model *model, int k, strand_block *strands, const directions *d,
+                                const mixture_block *m, size_t n, size_t from, size_t to, float *pdf)
 {
     float azimuth[ROOM], theta_r[BLOCK], theta_i[BLOCK], relative[BLOCK], density[BLOCK];
     int list[BLOCK];
@@ -71,13 +73,15 @@ static inline void list_density(const hairlut_model *model, int k, const directi
         pdf[s] = 0.0f;
     }
     const size_t padded = whole_vectors(count);
+    for (size_t s = count; s < padded; ++s)
+        list[s] = list[0];
     for (size_t s = 0; s < padded; ++s) {
-        const int at = s < count ? list[s] : list[0];
-        theta_r[s] = d->theta_r[at];
-        theta_i[s] = d->theta_i[at];
-        relative[s] = azimuth[at];
+        theta_r[s] = d->theta_r[list[s]];
+        theta_i[s] = d->theta_i[list[s]];
+        relative[s] = azimuth[list[s]];
     }
-    lobe_density(&model->lobes[k], padded, theta_r, theta_i, relative, density);
+    const strand_lobe at = listed_lobe(strands, k, list, padded);
+    lobe_density(&model->lobes[k], &at, padded, theta_r, theta_i, relative, density);
     for (size_t s = 0; s < count; ++s)
         pdf[list[s]] = density[s];
 }
@@ -88,8 +92,8 @@ typedef struct ranges {
 } ranges;
 
 /* Adds weight * density over the lobes, but for the lobe that a sample drew; `own` is NULL where none drew any. */
-static inline void add_densities(const hairlut_model *model, const directions *d, const mixture_block *m, size_t n,
-                                 const ranges *own, float *sum)
+static inline void add_densities(const hairlut_model *model, strand_block *strands, const directions *d,
+                                 const mixture_block *m, size_t n, const ranges *own, float *sum)
 {
     float pdf[ROOM];
     for (int k = 0; k < model->lobe_count; ++k) {
@@ -97,12 +101,12 @@ static inline void add_densities(const hairlut_model *model, const directions *d
         if (!m->some[k])
             continue;
         if (!m->every[k]) {
-            list_density(model, k, d, m, n, from, to, pdf);
+            list_density(model, k, strands, d, m, n, from, to, pdf);
         } else {
             if (from > 0)
-                range_density(model, k, d, m, 0, from, pdf);
+                range_density(model, k, strands, d, m, 0, from, pdf);
             if (to < n)
-                range_density(model, k, d, m, to, n - to, pdf);
+                range_density(model, k, strands, d, m, to, n - to, pdf);
         }
         for (size_t s = from; s < to; ++s)
             pdf[s] = 0.0f;
@@ -121,21 +125,34 @@ static inline void end_directions(directions *d, mixture_block *m, size_t n)
     store(m->side + n, all(0.0f));
 }
 
-/* hairlut_pdf_hair */
-static inline void pdf_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, float *out)
+/* The parameters of directions: `block` is to hold them. */
+static inline void copy_strands(const hairlut_model *model, size_t n, given_strands given, strand_block *block)
+{
+    begin_strands(model->strands, n, block);
+    for (int p = 0; p < model->strands->parameter_count; ++p)
+        for (size_t s = 0; s < n; s += LANES)
+            store(block->values[p] + s, load(given.values + (size_t)p * given.stride + s));
+}
+
+/* hairlut_pdf_hair, hairlut_pdf_strand; `strands` is room for their parameters, or NULL without */
+static inline void pdf_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, strand_block *strands,
+                                  float *out)
 {
     directions d;
     mixture_block m;
     float sum[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
-    begin_mixtures(model, in->given, n, &m, share);
+    begin_mixtures(model, in->strands, in->given, n, &m, share);
+    if (strands)
+        copy_strands(model, n, in->strands, strands);
     end_directions(&d, &m, n);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), theta_i = load(in->theta_i + s);
         const real phi_i = load(in->phi_i + s), offset = in->offset ? load(in->offset + s) : all(0.0f);
-        const mask wanted = both(both(known(theta_r, phi_r, theta_i, phi_i), is_finite(phi_i)), numbers(offset, offset));
+        const mask finite = both(both(known(theta_r, phi_r, theta_i, phi_i), is_finite(phi_i)), numbers(offset, offset));
+        const mask wanted = both(finite, known_strands(model->strands, in->strands, s));
         const real sum_of_shares =
-            m.constant ? all(model->mixture.mix.sum) : mix_at(model, in->given, theta_r, offset, &m, s, share);
+            m.constant ? all(model->mixture.mix.sum) : mix_at(model, in->strands, in->given, theta_r, offset, &m, s, share);
         store_weights(model, share, sum_of_shares, wanted, &m, s);
         store(d.theta_r + s, theta_r);
         store(d.r + s, wrap(phi_r, -hairlut_pi));
@@ -144,7 +161,7 @@ static inline void pdf_hair_block(const hairlut_model *model, size_t n, const ha
         store(sum + s, all(0.0f));
     }
     sum_up(model, n, &m);
-    add_densities(model, &d, &m, n, NULL, sum);
+    add_densities(model, strands, &d, &m, n, NULL, sum);
     for (size_t s = 0; s < n; s += LANES)
         store(out + s, choose(greater(load(m.valid + s), all(0.0f)), load(sum + s), all(0.0f)));
 }
@@ -192,18 +209,30 @@ typedef struct numbers_drawn {
     float theta[ROOM], phi[ROOM];
 } numbers_drawn;
 
+/* The parameters of samples */
+static inline void reorder_strands(const hairlut_model *model, size_t n, given_strands given, const int *order,
+                                   strand_block *block)
+{
+    begin_strands(model->strands, n, block);
+    for (int p = 0; p < model->strands->parameter_count; ++p)
+        reorder(block->values[p], given.values + (size_t)p * given.stride, order, n);
+}
+
 /* The mixtures of a block, and its inputs, in the order of the lobes drawn. What is valid stays in the order of the inputs. */
-static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, mixture_block *m, directions *d,
-                           numbers_drawn *u, ranges *own, int *order)
+static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, strand_block *strands,
+                           mixture_block *m, directions *d, numbers_drawn *u, ranges *own, int *order)
 {
     float r[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
-    begin_mixtures(model, in->given, n, m, share);
+    begin_mixtures(model, in->strands, in->given, n, m, share);
     for (size_t s = 0; s < n; s += LANES) {
         const real theta_r = load(in->theta_r + s), phi_r = load(in->phi_r + s), u_lobe = load(in->u_lobe + s);
         const real offset = in->offset ? load(in->offset + s) : all(0.0f);
-        const mask wanted = both(known(theta_r, phi_r, load(in->u_theta + s), load(in->u_phi + s)), numbers(offset, u_lobe));
-        const real sum = m->constant ? all(model->mixture.mix.sum) : mix_at(model, in->given, theta_r, offset, m, s, share);
+        const mask drawable =
+            both(known(theta_r, phi_r, load(in->u_theta + s), load(in->u_phi + s)), numbers(offset, u_lobe));
+        const mask wanted = both(drawable, known_strands(model->strands, in->strands, s));
+        const real sum =
+            m->constant ? all(model->mixture.mix.sum) : mix_at(model, in->strands, in->given, theta_r, offset, m, s, share);
         store_weights(model, share, sum, wanted, m, s);
         choose_lobes(model, share, sum, u_lobe, m, s);
         store(r + s, wrap(phi_r, -hairlut_pi));
@@ -214,6 +243,8 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
     reorder(d->r, r, order, n);
     reorder(u->theta, in->u_theta, order, n);
     reorder(u->phi, in->u_phi, order, n);
+    if (strands)
+        reorder_strands(model, n, in->strands, order, strands);
     for (int k = 0; k < model->lobe_count; ++k) {
         if (!m->constant)
             reorder_in_place(m->weight[k], order, n);
@@ -225,13 +256,14 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
 }
 
 /* What lobe k draws for its range of the sorted samples, and weight * density. Beyond its end, up to a whole vector, the next lobe writes again. */
-static inline void draw_range(const hairlut_model *model, int k, const mixture_block *m, const numbers_drawn *u, size_t from,
-                              size_t to, directions *d, float *pdf, float *cosines)
+static inline void draw_range(const hairlut_model *model, int k, strand_block *strands, const mixture_block *m,
+                              const numbers_drawn *u, size_t from, size_t to, directions *d, float *pdf, float *cosines)
 {
     const hairlut_lobe *lobe = &model->lobes[k];
+    const strand_lobe at = lobe_at(strands, k, from);
     float theta_i[BLOCK], azimuth[BLOCK];
     const size_t padded = whole_vectors(to - from);
-    draw_lobe(lobe, padded, d->theta_r + from, u->theta + from, u->phi + from, theta_i, azimuth, pdf + from);
+    draw_lobe(lobe, &at, padded, d->theta_r + from, u->theta + from, u->phi + from, theta_i, azimuth, pdf + from);
     for (size_t s = 0; s < padded; s += LANES) {
         const real theta = clamp(load(theta_i + s), all(lobe->theta.low), all(lobe->theta.high)), x = load(azimuth + s);
         store(pdf + from + s, mul(weight_at(model, m, k, from + s), load(pdf + from + s)));
@@ -255,8 +287,9 @@ static inline void clear_invalid(const float *valid, size_t n, hairlut_samples o
     }
 }
 
-/* hairlut_sample_hair */
-static inline void sample_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, hairlut_samples out)
+/* hairlut_sample_hair, hairlut_sample_strand; `strands` is as in pdf_hair_block. */
+static inline void sample_hair_block(const hairlut_model *model, size_t n, const hair_inputs *in, strand_block *strands,
+                                     hairlut_samples out)
 {
     directions d;
     numbers_drawn u;
@@ -264,14 +297,14 @@ static inline void sample_hair_block(const hairlut_model *model, size_t n, const
     ranges own;
     int order[ROOM];
     float cosines[ROOM], pdf[ROOM], solid[BLOCK];
-    prepare(model, n, in, &m, &d, &u, &own, order);
+    prepare(model, n, in, strands, &m, &d, &u, &own, order);
     for (size_t s = 0; s < n; s += LANES)
         store(pdf + s, all(0.0f)); /* so that compilers see that all of it is set */
     for (int k = 0; k < model->lobe_count; ++k)
         if (own.first[k] < own.first[k + 1])
-            draw_range(model, k, &m, &u, own.first[k], own.first[k + 1], &d, pdf, cosines);
+            draw_range(model, k, strands, &m, &u, own.first[k], own.first[k + 1], &d, pdf, cosines);
     end_directions(&d, &m, n);
-    add_densities(model, &d, &m, n, &own, pdf);
+    add_densities(model, strands, &d, &m, n, &own, pdf);
     for (size_t s = 0; s < n; s += LANES)
         store(solid + s, over(load(pdf + s), load(cosines + s)));
     restore_order(out.theta_i, d.theta_i, order, n);

@@ -5,6 +5,7 @@
  *   smaller(a, b) = a < b ? a : b and larger(a, b) = a > b ? a : b, so that NaN in a gives b
  *   truncated(a)    towards zero; any integer where a has none
  *   imul(a, b)      of integers in [0, 2^15)
+ *   iproduct(a, b)  of any integers
  *   flipped(a, s)   a, negated where s's sign bit is set
  *   by_sign(a, n, p)  n where a's sign bit is set, else p
  *   every(m)        whether all lanes are true

@@ -4,20 +4,50 @@
 #define HAIRLUT_BATCH_LOBE_H
 
 #include "batch_angle.h"
-#include "batch_axis.h"
+#include "batch_strand_axis.h"
 #include "lobe.h"
 
+/* A lobe's tables at strands. */
+typedef struct strand_lobe {
+    strand_table theta, phi;
+} strand_lobe;
+
+/* Without parameters */
+static const strand_lobe no_strands;
+
+/* Lobe k at the strands of a block from `from` on; NULL: no parameters */
+static inline strand_lobe lobe_at(strand_block *block, int k, size_t from)
+{
+    strand_lobe lobe = no_strands;
+    if (block) {
+        lobe.theta = table_at(block, &block->strands->theta[k].nodes, &block->theta, from);
+        lobe.phi = table_at(block, &block->strands->phi[k].nodes, &block->phi, from);
+    }
+    return lobe;
+}
+
+/* At the strands of a list of n in the block */
+static inline strand_lobe listed_lobe(strand_block *block, int k, const int *list, size_t n)
+{
+    strand_lobe lobe = lobe_at(block, k, 0);
+    if (block) {
+        list_strands(&lobe.theta, list, n, &block->listed_theta);
+        list_strands(&lobe.phi, list, n, &block->listed_phi);
+    }
+    return lobe;
+}
+
 /* hairlut_lobe_draw */
-static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *u_theta,
-                             const float *u_phi, float *theta_i, float *azimuth, float *pdf)
+static inline void draw_lobe(const hairlut_lobe *lobe, const strand_lobe *strands, size_t n, const float *theta_r,
+                             const float *u_theta, const float *u_phi, float *theta_i, float *azimuth, float *pdf)
 {
     axis_samples theta, phi;
     place(&lobe->theta, n, theta_r, u_theta, &theta);
     if (!lobe->uniform)
         place(&lobe->phi, n, theta_r, u_phi, &phi);
-    fetch_samples(&lobe->theta, n, &theta);
+    fetch_samples_at(&lobe->theta, &strands->theta, n, &theta);
     if (!lobe->uniform)
-        fetch_samples(&lobe->phi, n, &phi);
+        fetch_samples_at(&lobe->phi, &strands->phi, n, &phi);
     for (size_t s = 0; s < n; s += LANES) {
         real theta_slope, phi_slope;
         store(theta_i + s, draw(&theta, s, &theta_slope));
@@ -33,8 +63,8 @@ static inline void draw_lobe(const hairlut_lobe *lobe, size_t n, const float *th
 }
 
 /* hairlut_densities, of a lobe. azimuth: relative; not read where it is uniform. */
-static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float *theta_r, const float *theta_i,
-                                const float *azimuth, float *pdf)
+static inline void lobe_density(const hairlut_lobe *lobe, const strand_lobe *strands, size_t n, const float *theta_r,
+                                const float *theta_i, const float *azimuth, float *pdf)
 {
     axis_searches theta, phi;
     float contains[BLOCK]; /* 1, or 0 where the lobe's domain does not contain the direction */
@@ -45,9 +75,9 @@ static inline void lobe_density(const hairlut_lobe *lobe, size_t n, const float 
             inside = both(inside, begin_search(&lobe->phi, r, load(azimuth + s), &phi, s));
         store(contains + s, choose(inside, all(1.0f), all(0.0f)));
     }
-    end_search(&lobe->theta, n, &theta);
+    end_search_at(&lobe->theta, &strands->theta, n, &theta);
     if (!lobe->uniform)
-        end_search(&lobe->phi, n, &phi);
+        end_search_at(&lobe->phi, &strands->phi, n, &phi);
     for (size_t s = 0; s < n; s += LANES) {
         real theta_root, phi_root;
         const real theta_bend = inverse(&theta, s, &theta_root), known = load(contains + s);
@@ -90,7 +120,7 @@ static inline void sample_lobe_block(const hairlut_model *model, int lobe, size_
 {
     const hairlut_lobe *l = &model->lobes[lobe];
     float theta_i[BLOCK], azimuth[BLOCK], pdf[BLOCK], valid[BLOCK];
-    draw_lobe(l, n, in[0], in[2], in[3], theta_i, azimuth, pdf);
+    draw_lobe(l, &no_strands, n, in[0], in[2], in[3], theta_i, azimuth, pdf);
     for (size_t s = 0; s < n; s += LANES) {
         const real phi_r = load(in[1] + s), x = load(azimuth + s);
         const mask is_known = known(load(in[0] + s), phi_r, load(in[2] + s), load(in[3] + s));
@@ -123,7 +153,7 @@ static inline void pdf_lobe_block(const hairlut_model *model, int lobe, size_t n
         store(azimuth + first, table_azimuth(l, r, i, all(0.0f), all(1.0f)));
         first += LANES;
     } while (first < n);
-    lobe_density(l, n, in[0], in[2], azimuth, pdf);
+    lobe_density(l, &no_strands, n, in[0], in[2], azimuth, pdf);
     for (size_t s = 0; s < n; s += LANES)
         store(out + s, choose(greater(load(valid + s), all(0.0f)), load(pdf + s), all(0.0f)));
 }

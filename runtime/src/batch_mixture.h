@@ -4,7 +4,7 @@
 #define HAIRLUT_BATCH_MIXTURE_H
 
 #include "batch_angle.h"
-#include "batch_axis.h"
+#include "batch_strand.h"
 #include "mixture.h"
 
 /* The caller's shares of a block: lobe k's from shares + k * stride on. NULL: the model's own. */
@@ -26,48 +26,21 @@ typedef struct mixture_block {
     int every[HAIRLUT_MAX_LOBES]; /* whether all have */
 } mixture_block;
 
-enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, more are searched for single samples */
-
-/* hairlut_nodes_place */
-static inline real find_node(const hairlut_nodes *nodes, real x, real *t)
-{
-    float at[LANES], place[LANES];
-    real j = all(0.0f);
-    *t = all(0.0f);
-    if (nodes->count == 1)
-        return j;
-    if (nodes->count <= COUNTED_NODES) {
-        for (int k = 0; k + 2 < nodes->count; ++k)
-            j = add(j, choose(at_least(x, all(nodes->inner[k])), all(1.0f), all(0.0f)));
-    } else {
-        store(at, x);
-        for (int l = 0; l < LANES; ++l)
-            place[l] = (float)hairlut_nodes_place(nodes, at[l]).j;
-        j = load(place);
-    }
-    int offset[LANES];
-    real node[4];
-    istore(offset, truncated(add(j, j)));
-    gather4(nodes->pairs, offset, node);
-    *t = clamp(mul(sub(x, node[0]), node[1]), all(0.0f), all(1.0f));
-    return j;
-}
-
 enum { FOUR = sizeof(hairlut_four) / sizeof(float) };
 
-/* The four corners around, as node[4] of mixture.h: offsets in floats, and the weights between. */
-typedef struct grid_corners {
+/* The four nodes around, as node[4] of mixture.h: offsets in floats, for strands from the first corner's; and the weights between. */
+typedef struct grid_nodes {
     int at[4][LANES];
     real t, s;
-} grid_corners;
+} grid_nodes;
 
-/* Offsets stay below 2^24 (hairlut_validate_mixture), where floats count exactly. */
-static inline void find_corners(const hairlut_model *model, real theta_r, real arc, grid_corners *c)
+/* Offsets stay below 2^24 (hairlut_validate_mixture), where floats count exactly. `first` is where the grid begins. */
+static inline void find_grid_nodes(const hairlut_model *model, real first, real theta_r, real arc, grid_nodes *c)
 {
     const hairlut_mixture *m = &model->mixture;
     const int above = FOUR * m->above, beside = FOUR * m->beside;
     const real j = find_node(&m->theta_r, theta_r, &c->t), o = find_node(&m->arc, arc, &c->s);
-    const whole low = truncated(add(mul(j, all((float)above)), mul(o, all((float)beside))));
+    const whole low = truncated(add(first, add(mul(j, all((float)above)), mul(o, all((float)beside)))));
     istore(c->at[0], low);
     istore(c->at[1], iadd(low, iall(above)));
     istore(c->at[2], iadd(low, iall(beside)));
@@ -93,25 +66,74 @@ static inline real blend_turns(real a, real b, real t)
     return add(a, mul(t, wrap_turns(sub(b, a))));
 }
 
-/* hairlut_mixture_between for four lobes, whose fours begin at `four`; turns only where lobes are turned */
-static inline void blend_corners(const hairlut_mixture *m, const grid_corners *c, const hairlut_four *four, real share[4],
-                                 real turn[4])
+/* Four lobes at the four nodes; turns only where lobes are turned. */
+typedef struct vector_fours {
+    real share[4][4], turn[4][4];
+} vector_fours;
+
+static inline void gather_turns(const hairlut_four *four, const int *at, whole turn[4])
 {
-    real shares[4][4], turns[4][4];
-    for (int n = 0; n < 4; ++n) {
-        gather4(four->share, c->at[n], shares[n]);
-        if (m->turned)
-            gather4((const float *)(const void *)four->turn, c->at[n], turns[n]);
-    }
+    real bits[4];
+    gather4((const float *)(const void *)four->turn, at, bits);
     for (int l = 0; l < 4; ++l)
-        share[l] = blend_shares(blend_shares(shares[0][l], shares[1][l], c->t),
-                                blend_shares(shares[2][l], shares[3][l], c->t), c->s);
+        turn[l] = as_whole(bits[l]);
+}
+
+/* hairlut_read_fours */
+static inline void read_fours(const hairlut_mixture *m, const grid_nodes *c, const hairlut_four *four, vector_fours *read)
+{
+    for (int n = 0; n < 4; ++n) {
+        whole turn[4];
+        gather4(four->share, c->at[n], read->share[n]);
+        if (!m->turned)
+            continue;
+        gather_turns(four, c->at[n], turn);
+        for (int l = 0; l < 4; ++l)
+            read->turn[n][l] = converted(turn[l]);
+    }
+}
+
+/* hairlut_blend_fours, of what was read at the first corner, with corner number k */
+static inline void add_corner(const hairlut_model *model, const grid_nodes *c, const hairlut_four *four, real weight, int k,
+                              vector_fours *sum)
+{
+    const hairlut_four *here = four + model->strands->mixture.corner[k];
+    for (int n = 0; n < 4; ++n) {
+        real share[4];
+        whole first[4], turn[4];
+        gather4(here->share, c->at[n], share);
+        for (int l = 0; l < 4; ++l)
+            sum->share[n][l] = add(sum->share[n][l], mul(weight, share[l]));
+        if (!model->mixture.turns_vary)
+            continue;
+        gather_turns(four, c->at[n], first);
+        gather_turns(here, c->at[n], turn);
+        for (int l = 0; l < 4; ++l)
+            sum->turn[n][l] = add(sum->turn[n][l], mul(weight, converted(isub(turn[l], first[l]))));
+    }
+}
+
+static inline void blend_fours(const hairlut_model *model, const real *weight, const grid_nodes *c, const hairlut_four *four,
+                               vector_fours *blend)
+{
+    for (int n = 0; n < 4; ++n)
+        for (int l = 0; l < 4; ++l)
+            blend->share[n][l] = mul(weight[0], blend->share[n][l]);
+    for (int k = 1; k < model->strands->mixture.count; ++k)
+        add_corner(model, c, four, weight[k], k, blend);
+}
+
+/* hairlut_mixture_between for four lobes, from what stands at the four nodes */
+static inline void blend_nodes(const hairlut_mixture *m, const grid_nodes *c, const vector_fours *fours, real share[4],
+                               real turn[4])
+{
+    for (int l = 0; l < 4; ++l)
+        share[l] = blend_shares(blend_shares(fours->share[0][l], fours->share[1][l], c->t),
+                                blend_shares(fours->share[2][l], fours->share[3][l], c->t), c->s);
     for (int l = 0; m->turned && l < 4; ++l) {
-        real at[4];
-        for (int n = 0; n < 4; ++n)
-            at[n] = converted(as_whole(turns[n][l]));
-        const real wrapped = wrap_turns(blend_turns(blend_turns(at[0], at[1], c->t), blend_turns(at[2], at[3], c->t), c->s));
-        turn[l] = mul(all(hairlut_turn_radians), wrapped);
+        const real low = blend_turns(fours->turn[0][l], fours->turn[1][l], c->t);
+        const real high = blend_turns(fours->turn[2][l], fours->turn[3][l], c->t);
+        turn[l] = mul(all(hairlut_turn_radians), wrap_turns(blend_turns(low, high, c->s)));
     }
 }
 
@@ -133,25 +155,45 @@ static inline real take_shares(int count, given_shares given, size_t s, real sha
     return choose(at_least(finite, all(0.0f)), sum, all(0.0f));
 }
 
-/* hairlut_mixture_fill of samples s .. s+LANES-1, where that is not constant; the shares and, returned, their sum */
-static inline real mix_at(const hairlut_model *model, given_shares given, real theta_r, real offset, mixture_block *m,
-                          size_t s, real share[HAIRLUT_MAX_LOBES])
+/* hairlut_mixture_between; turns are stored. strands.values may be NULL. */
+static inline void mix_between(const hairlut_model *model, given_strands strands, real theta_r, real h, mixture_block *m,
+                               size_t s, real share[HAIRLUT_MAX_LOBES])
 {
     const hairlut_mixture *mixture = &model->mixture;
-    const int count = model->lobe_count;
-    const real h = clamp(offset, all(-1.0f), all(1.0f));
-    real sum = all(0.0f), turn[HAIRLUT_MAX_LOBES];
-    grid_corners c;
-    find_corners(model, theta_r, arcsine(mixture->mirrored ? magnitude(h) : h), &c);
-    for (int q = 0; q < mixture->four_count; ++q)
-        blend_corners(mixture, &c, mixture->fours + q, share + 4 * q, turn + 4 * q);
-    for (int k = 0; k < count; ++k)
-        sum = add(sum, share[k]);
-    for (int k = 0; mixture->turned && k < count; ++k)
+    const hairlut_spacing *spacing = strands.values ? &model->strands->mixture : NULL;
+    const int blended = spacing && spacing->count > 1;
+    real turn[HAIRLUT_MAX_LOBES], weight[HAIRLUT_CORNERS], first = all(0.0f);
+    grid_nodes nodes;
+    if (blended) {
+        strand_place place;
+        find_strands(model->strands, spacing->grid, strands, s, &place);
+        weigh_corners(place.t, model->strands->grids[spacing->grid].axis_count, weight);
+        first = mul(add(place.node, all(1.0f)), all((float)(FOUR * spacing->pitch)));
+    }
+    find_grid_nodes(model, first, theta_r, arcsine(mixture->mirrored ? magnitude(h) : h), &nodes);
+    for (int q = 0; q < mixture->four_count; ++q) {
+        vector_fours fours;
+        read_fours(mixture, &nodes, mixture->fours + q, &fours);
+        if (blended)
+            blend_fours(model, weight, &nodes, mixture->fours + q, &fours);
+        blend_nodes(mixture, &nodes, &fours, share + 4 * q, turn + 4 * q);
+    }
+    for (int k = 0; mixture->turned && k < model->lobe_count; ++k)
         store(m->turn[k] + s, turn[k]);
+}
+
+/* hairlut_mixture_fill of samples s .. s+LANES-1, where that is not constant; the shares and, returned, their sum */
+static inline real mix_at(const hairlut_model *model, given_strands strands, given_shares given, real theta_r, real offset,
+                          mixture_block *m, size_t s, real share[HAIRLUT_MAX_LOBES])
+{
+    const real h = clamp(offset, all(-1.0f), all(1.0f));
+    real sum = all(0.0f);
+    mix_between(model, strands, theta_r, h, m, s, share);
+    for (int k = 0; k < model->lobe_count; ++k)
+        sum = add(sum, share[k]);
     if (given.shares)
-        sum = take_shares(count, given, s, share);
-    if (mixture->mirrored)
+        sum = take_shares(model->lobe_count, given, s, share);
+    if (model->mixture.mirrored)
         store(m->side + s, choose(greater(all(0.0f), h), all(-1.0f), all(1.0f)));
     return sum;
 }
@@ -188,11 +230,11 @@ static inline real weight_at(const hairlut_model *model, const mixture_block *m,
 }
 
 /* Before those of n samples are mixed: shares and turns that are the same for all. */
-static inline void begin_mixtures(const hairlut_model *model, given_shares given, size_t n, mixture_block *m,
-                                  real share[HAIRLUT_MAX_LOBES])
+static inline void begin_mixtures(const hairlut_model *model, given_strands strands, given_shares given, size_t n,
+                                  mixture_block *m, real share[HAIRLUT_MAX_LOBES])
 {
     m->all_valid = 1;
-    m->constant = model->mixture.constant && !given.shares;
+    m->constant = model->mixture.constant && !given.shares && !strands.values;
     for (int k = 0; m->constant && k < model->lobe_count; ++k) {
         share[k] = all(model->mixture.mix.share[k]);
         for (size_t s = 0; model->mixture.turned && s < n; s += LANES)

@@ -40,6 +40,7 @@ static inline whole iadd(whole a, whole b) { return _mm256_add_epi32(a, b); }
 static inline whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
 static inline whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
 static inline whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
+static inline whole iproduct(whole a, whole b) { return _mm256_mullo_epi32(a, b); }
 static inline mask igreater(whole a, whole b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b)); }
 static inline whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
 static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }

@@ -49,6 +49,7 @@ static inline whole iadd(whole a, whole b) { return vaddq_s32(a, b); }
 static inline whole isub(whole a, whole b) { return vsubq_s32(a, b); }
 static inline whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
 static inline whole imul(whole a, whole b) { return vmulq_s32(a, b); }
+static inline whole iproduct(whole a, whole b) { return vmulq_s32(a, b); }
 static inline mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
 static inline whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }
 static inline whole truncated(real a) { return vcvtq_s32_f32(a); }

@@ -28,33 +28,20 @@ void hairlut_sample_strand_n(const hairlut_model *model, size_t n, const float *
                              const float *theta_r, const float *phi_r, const float *offset, const float *u_lobe,
                              const float *u_theta, const float *u_phi, hairlut_samples out)
 {
-    float values[HAIRLUT_MAX_PARAMETERS], own[HAIRLUT_MAX_LOBES];
-    if (!model->strands || !parameters) {
-        hairlut_sample_hair_n(model, n, shares, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, out);
-        return;
-    }
-    const hairlut_one *one = &hairlut_best_kernels()->one;
-    for (size_t i = 0; i < n; ++i) {
-        const hairlut_sample s =
-            one->sample_strand(model, hairlut_gather(parameters, model->strands->parameter_count, n, i, values),
-                               hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
-                               offset ? offset[i] : 0.0f, u_lobe[i], u_theta[i], u_phi[i]);
-        hairlut_put(out, i, s);
-    }
+    const hairlut_batch *batch = hairlut_batch_widest();
+    if (!model->strands || !parameters)
+        batch->sample_hair(model, n, shares, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, out);
+    else
+        batch->sample_strand(model, n, parameters, shares, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, out);
 }
 
 void hairlut_pdf_strand_n(const hairlut_model *model, size_t n, const float *parameters, const float *shares,
                           const float *theta_r, const float *phi_r, const float *offset, const float *theta_i,
                           const float *phi_i, float *pdf_angle)
 {
-    float values[HAIRLUT_MAX_PARAMETERS], own[HAIRLUT_MAX_LOBES];
-    if (!model->strands || !parameters) {
-        hairlut_pdf_hair_n(model, n, shares, theta_r, phi_r, offset, theta_i, phi_i, pdf_angle);
-        return;
-    }
-    const hairlut_one *one = &hairlut_best_kernels()->one;
-    for (size_t i = 0; i < n; ++i)
-        pdf_angle[i] = one->pdf_strand(model, hairlut_gather(parameters, model->strands->parameter_count, n, i, values),
-                                       hairlut_gather(shares, model->lobe_count, n, i, own), theta_r[i], phi_r[i],
-                                       offset ? offset[i] : 0.0f, theta_i[i], phi_i[i]);
+    const hairlut_batch *batch = hairlut_batch_widest();
+    if (!model->strands || !parameters)
+        batch->pdf_hair(model, n, shares, theta_r, phi_r, offset, theta_i, phi_i, pdf_angle);
+    else
+        batch->pdf_strand(model, n, parameters, shares, theta_r, phi_r, offset, theta_i, phi_i, pdf_angle);
 }

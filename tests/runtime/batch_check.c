@@ -12,7 +12,7 @@
 #include "batch.h"
 #include "internal.h"
 
-enum { MOST = 700, SLACK = 32, INPUTS = 6 + HAIRLUT_MAX_LOBES, ARRAYS = INPUTS + 4 };
+enum { MOST = 700, SLACK = 32, INPUTS = 6 + HAIRLUT_MAX_LOBES, ARRAYS = INPUTS + 5, AXES = 3 /* of parameters, at most */ };
 
 static const float half_pi = 1.57079637f, two_pi = 6.28318548f;
 static int failures;
@@ -51,7 +51,7 @@ static void add_to_checksum(const float *x, size_t n)
         checksum = (checksum ^ bytes[k]) * 1099511628211u;
 }
 
-/* ---- inputs: theta_r, phi_r, u_theta, u_phi, offset, u_lobe, then the shares of each lobe ---- */
+/* ---- inputs: theta_r, phi_r, u_theta, u_phi, offset, u_lobe, then the shares of each lobe; parameters apart ---- */
 
 static const float hard_angles[] = {0.0f,        -0.0f,        1.57079637f, -1.57079637f, 1.5707964f, -1.6f,
                                     3.14159274f, -3.14159274f, 100.0f,      -1e8f,        3e38f,      1e-30f,
@@ -62,7 +62,7 @@ static const float hard_shares[] = {0.0f, 0.0f, -0.0f, -1.0f, 1e-45f, 1e-38f, 3e
 
 #define PICK(array) array[random_bits() % (sizeof array / sizeof *array)]
 
-static float inputs[INPUTS][MOST], directions[2][MOST];
+static float inputs[INPUTS][MOST], parameters[AXES][MOST], directions[2][MOST];
 
 /* Every fifth sample takes hard values. */
 static void fill_inputs(size_t n)
@@ -77,6 +77,8 @@ static void fill_inputs(size_t n)
         inputs[5][i] = i % 11 == 10 ? PICK(hard_units) : random_unit();
         for (int k = 0; k < HAIRLUT_MAX_LOBES; ++k)
             inputs[6 + k][i] = (i + (size_t)k) % 13 == 6 ? PICK(hard_shares) : random_unit();
+        for (int p = 0; p < AXES; ++p) /* beyond their range too */
+            parameters[p][i] = (i + (size_t)p) % 9 == 4 ? PICK(hard_units) : 1.2f * random_unit() - 0.1f;
     }
 }
 
@@ -142,29 +144,32 @@ typedef struct shape {
     float zero;
 } shape;
 
-enum { NODES = 3 /* of an axis */, AXES = 2 };
+enum { NODES = 3 /* of an axis */ };
 
-/* Tables and mixture depend on the first `axes` of two parameters. */
+/* Tables and mixture depend on `axes` of the parameters: a lobe's azimuth on one less, every fifth table on none. */
 static hairlut_model *make_model(const shape *s, hairlut_warp warp, int axes)
 {
     static const float values[NODES] = {0.0f, 0.4f, 1.0f};
-    static const hairlut_parameter parameters[AXES] = {{sizeof *parameters, "rough", 0.0f, 1.0f, 0.7f},
-                                                       {sizeof *parameters, "dark", 0.0f, 1.0f, 0.4f}};
-    static const hairlut_parameter_nodes nodes_of[AXES] = {{sizeof *nodes_of, 1, NODES, values},
-                                                           {sizeof *nodes_of, 0, NODES, values}};
-    const int all = axes == 0 ? 1 : axes == 1 ? NODES : NODES * NODES;
+    static const hairlut_parameter described[AXES] = {{sizeof *described, "rough", 0.0f, 1.0f, 0.7f},
+                                                      {sizeof *described, "dark", 0.0f, 1.0f, 0.4f},
+                                                      {sizeof *described, "cuticle", 0.0f, 1.0f, 0.0f}};
+    static const hairlut_parameter_nodes nodes_of[AXES] = {
+        {sizeof *nodes_of, 1, NODES, values}, {sizeof *nodes_of, 0, NODES, values}, {sizeof *nodes_of, 2, NODES, values}};
+    static const int powers[AXES + 1] = {1, NODES, NODES * NODES, NODES * NODES * NODES};
+    const int all = powers[axes];
     hairlut_table tables[2 * HAIRLUT_MAX_LOBES];
     hairlut_lobe_desc lobes[HAIRLUT_MAX_LOBES];
     char names[HAIRLUT_MAX_LOBES][16];
     const size_t nodes = (size_t)(s->rows * s->columns * s->lobes * all), first = (size_t)(s->rows * s->columns * all);
     for (int k = 0; k < 2 * s->lobes; ++k) {
         const float low = k % 2 ? 0.0f : -half_pi, high = k % 2 ? two_pi : half_pi;
-        const hairlut_table table = {sizeof table, make_texels(s->width, s->height * all, low, high),
+        const int own = k % 5 == 4 || axes == 0 ? 0 : axes - k % 2;
+        const hairlut_table table = {sizeof table, make_texels(s->width, s->height * powers[own], low, high),
                                      s->width,     s->height,
                                      -half_pi,     half_pi,
                                      low,          high,
                                      warp,         1.0f / 262144.0f,
-                                     axes,         nodes_of};
+                                     own,          nodes_of};
         tables[k] = table;
     }
     for (int k = 0; k < s->lobes; ++k) {
@@ -179,7 +184,7 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp, int axes)
         share[k] += 0.01f; /* one lobe has a share everywhere */
     const hairlut_mixture_desc mixture = {sizeof mixture,          s->rows,     s->columns, theta_r, offset, share,
                                           s->turned ? turn : NULL, s->mirrored, axes,       nodes_of};
-    const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture, axes > 0 ? AXES : 0, parameters};
+    const hairlut_model_desc desc = {sizeof desc, s->lobes, lobes, &mixture, axes > 0 ? AXES : 0, described};
     hairlut_model *model = NULL;
     char message[HAIRLUT_MESSAGE_SIZE];
     if (hairlut_model_create(&desc, NULL, &model, message) != HAIRLUT_OK) {
@@ -202,7 +207,7 @@ typedef struct call {
     const hairlut_batch *batch;
     const hairlut_model *model;
     int lobe; /* -1: the whole hair */
-    int has_shares, has_offset;
+    int has_shares, has_offset, has_parameters;
     size_t n;
 } call;
 
@@ -230,76 +235,95 @@ static float *place_shares(const call *c)
     return c->has_shares ? place_array(6, together, n * lobes) : NULL;
 }
 
-static void one_sample(const call *c, size_t i, float shares[HAIRLUT_MAX_LOBES])
+/* The same of parameters, which are beside the shares. */
+static float *place_parameters(const call *c)
+{
+    static float together[AXES * MOST];
+    for (size_t p = 0; p < AXES; ++p)
+        memcpy(together + p * c->n, parameters[p], c->n * sizeof *together);
+    return c->has_parameters ? place_array(INPUTS + 4, together, c->n * AXES) : NULL;
+}
+
+static void one_sample(const call *c, size_t i, const float *strand, float *shares)
 {
     float (*in)[MOST] = inputs;
     const float offset = c->has_offset ? in[4][i] : 0.0f;
-    const hairlut_sample s =
-        c->lobe >= 0 ? hairlut_sample_lobe(c->model, c->lobe, in[0][i], in[1][i], in[2][i], in[3][i])
-                     : hairlut_sample_hair(c->model, shares, in[0][i], in[1][i], offset, in[5][i], in[2][i], in[3][i]);
+    const hairlut_sample s = c->lobe >= 0 ? hairlut_sample_lobe(c->model, c->lobe, in[0][i], in[1][i], in[2][i], in[3][i])
+                                          : hairlut_sample_strand(c->model, strand, shares, in[0][i], in[1][i], offset,
+                                                                  in[5][i], in[2][i], in[3][i]);
     const float fields[4] = {s.theta_i, s.phi_i, s.pdf_angle, s.pdf_solid_angle};
     for (int k = 0; k < 4; ++k)
         expected[k][i] = fields[k];
 }
 
-static void one_pdf(const call *c, size_t i, float shares[HAIRLUT_MAX_LOBES])
+static void one_pdf(const call *c, size_t i, const float *strand, float *shares)
 {
     float (*in)[MOST] = inputs;
     const float offset = c->has_offset ? in[4][i] : 0.0f;
     expected_pdf[i] =
-        c->lobe >= 0 ? hairlut_pdf_lobe(c->model, c->lobe, in[0][i], in[1][i], directions[0][i], directions[1][i])
-                     : hairlut_pdf_hair(c->model, shares, in[0][i], in[1][i], offset, directions[0][i], directions[1][i]);
+        c->lobe >= 0
+            ? hairlut_pdf_lobe(c->model, c->lobe, in[0][i], in[1][i], directions[0][i], directions[1][i])
+            : hairlut_pdf_strand(c->model, strand, shares, in[0][i], in[1][i], offset, directions[0][i], directions[1][i]);
 }
 
-static void one_by_one(const call *c, void (*one)(const call *, size_t, float *))
+static void one_by_one(const call *c, void (*one)(const call *, size_t, const float *, float *))
 {
-    float shares[HAIRLUT_MAX_LOBES];
+    float shares[HAIRLUT_MAX_LOBES], strand[AXES];
     for (size_t i = 0; i < c->n; ++i) {
         for (int k = 0; k < HAIRLUT_MAX_LOBES; ++k)
             shares[k] = inputs[6 + k][i];
-        one(c, i, c->has_shares ? shares : NULL);
+        for (int p = 0; p < AXES; ++p)
+            strand[p] = parameters[p][i];
+        one(c, i, c->has_parameters ? strand : NULL, c->has_shares ? shares : NULL);
     }
 }
 
-static void sample(const call *c, float *const a[6], const float *shares, hairlut_samples out)
+static void sample(const call *c, float *const a[6], const float *strands, const float *shares, hairlut_samples out)
 {
+    const float *offset = c->has_offset ? a[4] : NULL;
     if (c->lobe >= 0)
         c->batch->sample_lobe(c->model, c->lobe, c->n, a[0], a[1], a[2], a[3], out);
+    else if (strands)
+        c->batch->sample_strand(c->model, c->n, strands, shares, a[0], a[1], offset, a[5], a[2], a[3], out);
     else
-        c->batch->sample_hair(c->model, c->n, shares, a[0], a[1], c->has_offset ? a[4] : NULL, a[5], a[2], a[3], out);
+        c->batch->sample_hair(c->model, c->n, shares, a[0], a[1], offset, a[5], a[2], a[3], out);
 }
 
-static void pdf(const call *c, float *const a[6], const float *shares, float *out)
+static void pdf(const call *c, float *const a[6], const float *strands, const float *shares, float *out)
 {
+    const float *offset = c->has_offset ? a[4] : NULL;
     if (c->lobe >= 0)
         c->batch->pdf_lobe(c->model, c->lobe, c->n, a[0], a[1], a[2], a[3], out);
+    else if (strands)
+        c->batch->pdf_strand(c->model, c->n, strands, shares, a[0], a[1], offset, a[2], a[3], out);
     else
-        c->batch->pdf_hair(c->model, c->n, shares, a[0], a[1], c->has_offset ? a[4] : NULL, a[2], a[3], out);
+        c->batch->pdf_hair(c->model, c->n, shares, a[0], a[1], offset, a[2], a[3], out);
 }
 
 static void check_sample(const call *c)
 {
     static const char *const names[4] = {"theta_i", "phi_i", "pdf_angle", "pdf_solid_angle"};
     const size_t n = c->n;
-    float *a[6], *out[4], *shares = place_shares(c);
+    float *a[6], *out[4], *shares = place_shares(c), *strands = place_parameters(c);
     for (int k = 0; k < 6; ++k)
         a[k] = place_array(k, inputs[k], n);
     for (int k = 0; k < 4; ++k)
         out[k] = place_array(INPUTS + k, inputs[0], n);
     const hairlut_samples apart = {out[0], out[1], out[2], out[3]}, angles_only = {out[0], out[1], NULL, NULL};
-    sample(c, a, shares, apart);
+    sample(c, a, strands, shares, apart);
     for (int k = 0; k < 4; ++k)
         compare(names[k], c->batch->name, n, expected[k], out[k]);
     for (int k = 0; k < 6; ++k)
         if (memcmp(a[k], inputs[k], n * sizeof *a[k]) != 0)
             fail("an input changed", c->batch->name, n, 0, inputs[k][0], a[k][0]);
-    sample(c, a, shares, angles_only);
+    sample(c, a, strands, shares, angles_only);
     compare("theta_i alone", c->batch->name, n, expected[0], out[0]);
     compare("phi_i alone", c->batch->name, n, expected[1], out[1]);
     const unsigned shift = random_bits() % 6; /* each output in place of some input */
-    float *const to[4] = {a[shift], a[(shift + 1) % 6], a[(shift + 2) % 6], shares ? shares : a[(shift + 3) % 6]};
+    float *const to[4] = {a[shift], strands ? strands + (AXES - 1) * n : a[(shift + 1) % 6], a[(shift + 2) % 6],
+                          shares ? shares : a[(shift + 3) % 6]};
     const hairlut_samples in_place = {to[0], to[1], to[2], to[3]};
-    sample(c, a, shares, in_place);
+    sample(c, a, strands, shares, in_place);
     for (int k = 0; k < 4; ++k)
         compare(names[k], c->batch->name, n, expected[k], to[k]);
     for (int k = 0; k < 4; ++k)
@@ -311,13 +335,14 @@ static void check_sample(const call *c)
 static void check_pdf(const call *c)
 {
     const size_t n = c->n;
-    float *a[6], *out = place_array(INPUTS, inputs[0], n), *shares = place_shares(c);
+    float *a[6], *out = place_array(INPUTS, inputs[0], n), *shares = place_shares(c), *strands = place_parameters(c);
     for (int k = 0; k < 6; ++k)
         a[k] = place_array(k, k == 2 ? directions[0] : k == 3 ? directions[1] : inputs[k], n);
-    pdf(c, a, shares, out);
+    pdf(c, a, strands, shares, out);
     compare("pdf", c->batch->name, n, expected_pdf, out);
-    float *const to = shares && random_bits() % 4 == 0 ? shares : a[random_bits() % 5];
-    pdf(c, a, shares, to);
+    const unsigned which = random_bits() % 8;
+    float *const to = shares && which == 5 ? shares : strands && which >= 6 ? strands + which % 2 * n : a[which % 5];
+    pdf(c, a, strands, shares, to);
     compare("pdf in place", c->batch->name, n, expected_pdf, to);
     check_canary(c, out, n);
 }
@@ -340,56 +365,33 @@ static void check_model(const hairlut_batch *batch, const hairlut_model *model, 
     for (int lobe = -1; lobe < hairlut_lobe_count(model) && lobe < 2; ++lobe)
         for (size_t n = 0; n <= most + 1; ++n) {
             const int has_shares = (int)(n % 3 == 1), has_offset = (int)(n % 4 != 2);
-            const call c = {batch, model, lobe, has_shares, has_offset, n <= most ? n : MOST};
+            const call c = {batch, model, lobe, has_shares, has_offset, 0, n <= most ? n : MOST};
             check_call(&c);
         }
 }
 
 /* ---- strands ---- */
 
-/* Arrays of strands against one after the other. */
-static void check_strands(const hairlut_model *model)
+/* The whole hair at random strands */
+static void check_strands(const hairlut_batch *batch, const hairlut_model *model)
 {
-    static float strands[AXES * MOST], together[HAIRLUT_MAX_LOBES * MOST], out[5][MOST];
-    const hairlut_samples samples = {out[0], out[1], out[2], out[3]};
-    const int lobes = hairlut_lobe_count(model);
-    fill_inputs(MOST);
-    for (size_t i = 0; i < AXES * MOST; ++i)
-        strands[i] = i % 9 == 4 ? PICK(hard_units) : 1.2f * random_unit() - 0.1f;
-    for (int k = 0; k < lobes; ++k)
-        memcpy(together + k * MOST, inputs[6 + k], sizeof inputs[6 + k]);
-    for (size_t i = 0; i < MOST; ++i) {
-        const float strand[AXES] = {strands[i], strands[MOST + i]};
-        float shares[HAIRLUT_MAX_LOBES];
-        for (int k = 0; k < lobes; ++k)
-            shares[k] = inputs[6 + k][i];
-        const hairlut_sample s = hairlut_sample_strand(model, strand, NULL, inputs[0][i], inputs[1][i], inputs[4][i],
-                                                       inputs[5][i], inputs[2][i], inputs[3][i]);
-        expected[0][i] = s.theta_i, expected[1][i] = s.phi_i;
-        expected[2][i] = s.pdf_angle, expected[3][i] = s.pdf_solid_angle;
-        expected_pdf[i] = hairlut_pdf_strand(model, strand, shares, inputs[0][i], inputs[1][i], 0.0f, s.theta_i, s.phi_i);
+    static const size_t counts[] = {0, 1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 255, 256, 264, 300, MOST};
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
+        const call c = {batch, model, -1, k % 3 == 1, k % 4 != 2, 1, counts[k]};
+        check_call(&c);
     }
-    hairlut_sample_strand_n(model, MOST, strands, NULL, inputs[0], inputs[1], inputs[4], inputs[5], inputs[2], inputs[3],
-                            samples);
-    hairlut_pdf_strand_n(model, MOST, strands, together, inputs[0], inputs[1], NULL, out[0], out[1], out[4]);
-    for (int k = 0; k < 4; ++k) {
-        compare("strand", "strands", MOST, expected[k], out[k]);
-        add_to_checksum(expected[k], MOST);
-    }
-    compare("pdf of a strand", "strands", MOST, expected_pdf, out[4]);
-    add_to_checksum(expected_pdf, MOST);
 }
 
-static void check_all_strands(void)
+static void check_all_strands(const hairlut_batch *batch)
 {
-    static const shape shapes[] = {{9, 5, 4, 7, 3, 1, 1, 0.3f},
-                                   {60, 3, 6, 1, 1, 0, 1, 0.0f},
-                                   {100, 4, 2, 3, 4, 0, 0, 0.2f},
-                                   {600, 2, 5, 2, 1, 1, 1, 0.0f}};
+    static const shape shapes[] = {{9, 5, 4, 7, 3, 1, 1, 0.3f},   {60, 3, 6, 1, 1, 0, 1, 0.0f},
+                                   {100, 4, 2, 3, 4, 0, 0, 0.2f}, {600, 2, 5, 2, 1, 1, 1, 0.0f},
+                                   {73, 3, 1, 1, 1, 0, 0, 0.0f},  {24, 9, 3, 2, 5, 1, 0, 0.0f},
+                                   {8, 3, 16, 3, 4, 1, 1, 0.6f}};
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; ++k)
         for (int axes = 1; axes <= AXES; ++axes) {
             hairlut_model *model = make_model(&shapes[k], k % 2 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES, axes);
-            check_strands(model);
+            check_strands(batch, model);
             hairlut_free(model);
         }
 }
@@ -421,7 +423,9 @@ int main(void)
                                       hairlut_sample_lobe_n,
                                       hairlut_pdf_lobe_n,
                                       hairlut_sample_hair_n,
-                                      hairlut_pdf_hair_n};
+                                      hairlut_pdf_hair_n,
+                                      hairlut_sample_strand_n,
+                                      hairlut_pdf_strand_n};
     const hairlut_batch *sets[8] = {&public_set};
     int count = 1;
     for (int level = 0; hairlut_batch_level(level); ++level)
@@ -433,7 +437,7 @@ int main(void)
         check_model(sets[s], hairlut_builtin("printed"), 200);
         check_model(sets[s], hairlut_builtin("fitted"), 200);
         check_shapes(sets[s]);
-        check_all_strands();
+        check_all_strands(sets[s]);
         printf("checksum %016llx\n", (unsigned long long)checksum);
     }
     return failures != 0;

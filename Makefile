@@ -84,8 +84,9 @@ format: setup
 	@$(BIN)/ruff format --config precompute/pyproject.toml precompute tests runtime
 	@$(BIN)/clang-format -i $(C_SOURCES)
 
+# a file of tests is one worker's: its fixtures are built once
 test: lint build
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 bench: build
 	PYTHONPATH=tests $(BIN)/python -m bench.run

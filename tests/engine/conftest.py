@@ -7,6 +7,7 @@ Where the packages are, a plugin that does not build is a failure.
 from pathlib import Path
 
 import pytest
+from runtime.c_library import alone
 
 
 @pytest.fixture(scope="session")
@@ -20,10 +21,11 @@ def tables():
 
 @pytest.fixture(scope="session")
 def mi():
-    from report.engine import PluginUnavailable, load_engine
+    from report.engine import DEFAULT_BUILD, PluginUnavailable, load_engine
 
     try:
-        return load_engine()
+        with alone(DEFAULT_BUILD):
+            return load_engine()
     except PluginUnavailable as error:
         pytest.skip(f"the Mitsuba plugin is not tested: {error}")
 

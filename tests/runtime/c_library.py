@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The C library as the tests see it: built once a session, called through ctypes on numpy arrays."""
 
+import contextlib
 import ctypes
+import fcntl
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -40,20 +43,30 @@ def run(*command: str | Path, timeout: float = 300, **options) -> subprocess.Com
     return done
 
 
+@contextlib.contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """One process at a time builds in a folder: `make test` runs two files of tests at once."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 def cmake(source: Path, build: Path, *definitions: str, targets: tuple[str, ...] = ()) -> Path:
     """Configures and builds a CMake project with the Ninja that is at hand; returns the build folder."""
-    run(
-        tool("cmake"),
-        "-S",
-        source,
-        "-B",
-        build,
-        "-G",
-        "Ninja",
-        f"-DCMAKE_MAKE_PROGRAM={tool('ninja')}",
-        *definitions,
-    )
-    run(tool("cmake"), "--build", build, *(["--target", *targets] if targets else []))
+    with alone(build):
+        run(
+            tool("cmake"),
+            "-S",
+            source,
+            "-B",
+            build,
+            "-G",
+            "Ninja",
+            f"-DCMAKE_MAKE_PROGRAM={tool('ninja')}",
+            *definitions,
+        )
+        run(tool("cmake"), "--build", build, *(["--target", *targets] if targets else []))
     return build
 
 

@@ -254,7 +254,8 @@ HAIRLUT_API float hairlut_pdf_hair(const hairlut_model *model, const float *shar
 
 /* The whole hair of one strand: the two functions above for a model over parameters. parameters: one number for each of the
  * model's, in their order, or NULL for the standard values. A number outside its parameter's range is clamped; NaN gives density 0,
- * with finite angles. A model without parameters reads none: this is then hairlut_sample_hair.
+ * with finite angles. A model without parameters reads none: this is then hairlut_sample_hair. The standard values passed as numbers
+ * give what NULL gives but for rounding, about 1e-6 of a density: NULL reads tables that were blended before.
  *
  *     float strand[] = {beta_m, beta_n, absorption};       // the order of hairlut_parameter_name
  *     hairlut_sample s = hairlut_sample_strand(hair, strand, NULL, theta_r, phi_r, offset, u_lobe, u_theta, u_phi); */
@@ -263,6 +264,36 @@ HAIRLUT_API hairlut_sample hairlut_sample_strand(const hairlut_model *model, con
                                                  float u_phi);
 HAIRLUT_API float hairlut_pdf_strand(const hairlut_model *model, const float *parameters, const float *shares, float theta_r,
                                      float phi_r, float offset, float theta_i, float phi_i);
+
+/* ---- several calls at one hit ---------------------------------------------------------------------------------- */
+
+/* A viewer: all that calls at one hit have in common, computed once, where a renderer draws from it and asks for the densities of
+ * several directions that lights chose. Its functions give what hairlut_sample_strand and hairlut_pdf_strand give for the same
+ * arguments, bit for bit, for models with and without parameters.
+ *
+ *     hairlut_viewer viewer;
+ *     hairlut_viewer_at(&viewer, hair, NULL, NULL, theta_r, phi_r, offset);           // once a hit
+ *     hairlut_sample s = hairlut_viewer_sample(&viewer, u_lobe, u_theta, u_phi);      // as often as needed
+ *     float q = hairlut_viewer_pdf(&viewer, theta_i, phi_i);
+ *
+ * A viewer belongs to the caller, on the stack or anywhere, and may be copied and dropped; what it contains is private. `parameters`
+ * and `shares` are read only by hairlut_viewer_at; the model has to outlive the viewer. A viewer of zeros, or that was never set, may
+ * not be used. Any number of threads may use one viewer at once. */
+enum { HAIRLUT_VIEWER_SIZE = 1024 }; /* bytes, in all of 2.x */
+typedef struct hairlut_viewer {
+    union {
+        const void *pointer;
+        double number;
+        unsigned char bytes[HAIRLUT_VIEWER_SIZE];
+    } contents;
+} hairlut_viewer;
+
+HAIRLUT_API void hairlut_viewer_at(hairlut_viewer *viewer, const hairlut_model *model, const float *parameters,
+                                   const float *shares, float theta_r, float phi_r, float offset);
+HAIRLUT_API hairlut_sample hairlut_viewer_sample(const hairlut_viewer *viewer, float u_lobe, float u_theta, float u_phi);
+HAIRLUT_API float hairlut_viewer_pdf(const hairlut_viewer *viewer, float theta_i, float phi_i);
+
+/* ---- one lobe -------------------------------------------------------------------------------------------------- */
 
 /* One lobe by itself, not turned: lobe 0 to count - 1. Any other number gives density 0, with finite angles. */
 HAIRLUT_API hairlut_sample hairlut_sample_lobe(const hairlut_model *model, int lobe, float theta_r, float phi_r,

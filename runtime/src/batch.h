@@ -13,6 +13,8 @@
 #define HAIRLUT_BATCH_NEON 1
 #endif
 
+struct hairlut_view; /* viewer.h */
+
 /* Those of a set of kernels for one direction. A model has the lobe. */
 typedef struct hairlut_one {
     hairlut_sample (*sample_lobe)(const hairlut_model *model, int lobe, float theta_r, float phi_r, float u_theta,
@@ -27,6 +29,11 @@ typedef struct hairlut_one {
                                     float phi_r, float offset, float u_lobe, float u_theta, float u_phi);
     float (*pdf_strand)(const hairlut_model *model, const float *parameters, const float *shares, float theta_r, float phi_r,
                         float offset, float theta_i, float phi_i);
+    /* of viewers; parameters: NULL, or those of a model that has any */
+    void (*view)(struct hairlut_view *view, const hairlut_model *model, const float *parameters, const float *shares,
+                 float theta_r, float phi_r, float offset);
+    hairlut_sample (*sample_view)(const struct hairlut_view *view, float u_lobe, float u_theta, float u_phi);
+    float (*pdf_view)(const struct hairlut_view *view, float theta_i, float phi_i);
 } hairlut_one;
 
 /* One set of kernels; each member is a function of hairlut.h. */

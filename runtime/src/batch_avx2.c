@@ -6,11 +6,8 @@
 #include "simd_avx2.h"
 
 #include "batch_kernel.h"
-#include "strand_one.h"
+#include "viewer_one.h"
 
-const hairlut_batch hairlut_batch_avx2 = {
-    "avx2",        {sample_lobe_one, pdf_lobe_one, sample_hair_one, pdf_hair_one, sample_strand_one, pdf_strand_one},
-    sample_lobe,   pdf_lobe,
-    sample_hair,   pdf_hair,
-    sample_strand, pdf_strand};
+const hairlut_batch hairlut_batch_avx2 = {"avx2",      HAIRLUT_ONE, sample_lobe,   pdf_lobe,
+                                          sample_hair, pdf_hair,    sample_strand, pdf_strand};
 #endif

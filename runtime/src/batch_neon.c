@@ -6,11 +6,8 @@
 #include "simd_neon.h"
 
 #include "batch_kernel.h"
-#include "strand_one.h"
+#include "viewer_one.h"
 
-const hairlut_batch hairlut_batch_neon = {
-    "neon",        {sample_lobe_one, pdf_lobe_one, sample_hair_one, pdf_hair_one, sample_strand_one, pdf_strand_one},
-    sample_lobe,   pdf_lobe,
-    sample_hair,   pdf_hair,
-    sample_strand, pdf_strand};
+const hairlut_batch hairlut_batch_neon = {"neon",      HAIRLUT_ONE, sample_lobe,   pdf_lobe,
+                                          sample_hair, pdf_hair,    sample_strand, pdf_strand};
 #endif

@@ -2,7 +2,7 @@
 /* The _n functions where no vector instructions are known: the one-direction forms in a loop. */
 #include "batch.h"
 #include "internal.h"
-#include "strand_one.h"
+#include "viewer_one.h"
 
 static void sample_lobe(const hairlut_model *model, int lobe, size_t n, const float *theta_r, const float *phi_r,
                         const float *u_theta, const float *u_phi, hairlut_samples out)
@@ -61,8 +61,5 @@ static void pdf_strand(const hairlut_model *model, size_t n, const float *parame
                                       offset ? offset[i] : 0.0f, theta_i[i], phi_i[i]);
 }
 
-const hairlut_batch hairlut_batch_portable = {
-    "portable",    {sample_lobe_one, pdf_lobe_one, sample_hair_one, pdf_hair_one, sample_strand_one, pdf_strand_one},
-    sample_lobe,   pdf_lobe,
-    sample_hair,   pdf_hair,
-    sample_strand, pdf_strand};
+const hairlut_batch hairlut_batch_portable = {"portable",  HAIRLUT_ONE, sample_lobe,   pdf_lobe,
+                                              sample_hair, pdf_hair,    sample_strand, pdf_strand};

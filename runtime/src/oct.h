@@ -19,15 +19,10 @@ static inline hairlut_quad hairlut_oct_low(hairlut_oct a) { return _mm256_castps
 static inline hairlut_quad hairlut_oct_high(hairlut_oct a) { return _mm256_extractf128_ps(a, 1); }
 /* clang-format on */
 
-/* How many of a are at most x. */
-static inline unsigned hairlut_oct_count(hairlut_oct a, hairlut_oct x)
+/* A bit for each lane of a that is at most x. */
+static inline unsigned hairlut_oct_mask(hairlut_oct a, hairlut_oct x)
 {
-    const unsigned at_most = (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, x, _CMP_LE_OQ));
-#ifdef __POPCNT__
-    return (unsigned)_mm_popcnt_u32(at_most);
-#else
-    return hairlut_bits[at_most];
-#endif
+    return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, x, _CMP_LE_OQ));
 }
 
 #else
@@ -49,8 +44,24 @@ static inline hairlut_oct hairlut_oct_sub(hairlut_oct a, hairlut_oct b) { return
 static inline hairlut_oct hairlut_oct_mul(hairlut_oct a, hairlut_oct b) { return hairlut_oct_of(hairlut_quad_mul(a.low, b.low), hairlut_quad_mul(a.high, b.high)); }
 static inline hairlut_quad hairlut_oct_low(hairlut_oct a) { return a.low; }
 static inline hairlut_quad hairlut_oct_high(hairlut_oct a) { return a.high; }
-static inline unsigned hairlut_oct_count(hairlut_oct a, hairlut_oct x) { return hairlut_quad_count_two(a.low, a.high, x.low); }
+static inline unsigned hairlut_oct_mask(hairlut_oct a, hairlut_oct x) { return hairlut_quad_mask(a.low, x.low) | hairlut_quad_mask(a.high, x.high) << 4; }
 /* clang-format on */
 #endif
+
+/* How many of the bits 0 to 7 are set. */
+static inline unsigned hairlut_count_bits(unsigned bits)
+{
+#if defined(HAIRLUT_QUAD_SSE2) && defined(__POPCNT__)
+    return (unsigned)_mm_popcnt_u32(bits);
+#else
+    return hairlut_bits[bits];
+#endif
+}
+
+/* How many of a are at most x. */
+static inline unsigned hairlut_oct_count(hairlut_oct a, hairlut_oct x)
+{
+    return hairlut_count_bits(hairlut_oct_mask(a, x));
+}
 
 #endif

@@ -114,36 +114,59 @@ HAIRLUT_INLINE float mixed(const hairlut_model *model, const hairlut_mix *mix, c
     return pdf;
 }
 
+/* The whole hair for a viewer: the mixture there, phi_r in [-pi, pi), and whether any direction has a density. */
+typedef struct hair {
+    const hairlut_model *model;
+    const hairlut_mix *mix;
+    float theta_r, r;
+    int known;
+} hair;
+
+HAIRLUT_INLINE hair hair_of(const hairlut_model *model, const hairlut_mix *mix, float theta_r, float phi_r, float offset)
+{
+    const hair h = {model, mix, theta_r, hairlut_wrap(phi_r, -hairlut_pi),
+                    hairlut_known(theta_r, phi_r, offset, 0.0f) && mix->sum > 0.0f};
+    return h;
+}
+
+HAIRLUT_INLINE hairlut_sample sample_of_hair(const hair *h, float u_lobe, float u_theta, float u_phi)
+{
+    const hairlut_mix *mix = h->mix;
+    const int chosen = hairlut_mixture_choose(mix, u_lobe), k = mix->lobes[chosen];
+    const hairlut_lobe *lobe = &h->model->lobes[k];
+    const grid_row at = row_of(&lobe->theta, h->theta_r);
+    const hairlut_drawn drawn = hairlut_lobe_draw(lobe, h->theta_r, &at.row, u_theta, u_phi);
+    const float theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta);
+    const float phi_i = lobe->uniform ? drawn.phi : hairlut_incident_azimuth(lobe, h->r, drawn.phi, mix->turn[k], mix->side);
+    if (!h->known || isunordered(u_theta, u_phi) || u_lobe != u_lobe)
+        return hairlut_finish(theta_i, phi_i, 0.0f);
+    const direction d = {h->theta_r, h->r, theta_i, phi_i};
+    return hairlut_finish(theta_i, phi_i, mixed(h->model, mix, &d, &at, chosen, mix->weight[k] * drawn.pdf));
+}
+
+HAIRLUT_INLINE float pdf_of_hair(const hair *h, float theta_i, float phi_i)
+{
+    if (!h->known || !hairlut_known(theta_i, phi_i, 0.0f, 0.0f))
+        return 0.0f;
+    const direction d = {h->theta_r, h->r, theta_i, hairlut_wrap(phi_i, -hairlut_pi)};
+    const grid_row at = row_of(&h->model->lobes[h->mix->lobes[0]].theta, h->theta_r);
+    return mixed(h->model, h->mix, &d, &at, h->mix->count, 0.0f);
+}
+
 static hairlut_sample sample_hair_one(const hairlut_model *model, const float *shares, float theta_r, float phi_r,
                                       float offset, float u_lobe, float u_theta, float u_phi)
 {
     hairlut_mix own;
-    const hairlut_mix *mix = hairlut_mixture_at(model, shares, theta_r, offset, &own);
-    const int chosen = hairlut_mixture_choose(mix, u_lobe), k = mix->lobes[chosen];
-    const hairlut_lobe *lobe = &model->lobes[k];
-    const grid_row at = row_of(&lobe->theta, theta_r);
-    const hairlut_drawn drawn = hairlut_lobe_draw(lobe, theta_r, &at.row, u_theta, u_phi);
-    const float theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta);
-    const float r = hairlut_wrap(phi_r, -hairlut_pi);
-    const float phi_i = lobe->uniform ? drawn.phi : hairlut_incident_azimuth(lobe, r, drawn.phi, mix->turn[k], mix->side);
-    const int valid = hairlut_known(theta_r, phi_r, u_theta, u_phi) && !isunordered(offset, u_lobe) && mix->sum > 0.0f;
-    if (!valid)
-        return hairlut_finish(theta_i, phi_i, 0.0f);
-    const direction d = {theta_r, r, theta_i, phi_i};
-    return hairlut_finish(theta_i, phi_i, mixed(model, mix, &d, &at, chosen, mix->weight[k] * drawn.pdf));
+    const hair h = hair_of(model, hairlut_mixture_at(model, shares, theta_r, offset, &own), theta_r, phi_r, offset);
+    return sample_of_hair(&h, u_lobe, u_theta, u_phi);
 }
 
 static float pdf_hair_one(const hairlut_model *model, const float *shares, float theta_r, float phi_r, float offset,
                           float theta_i, float phi_i)
 {
     hairlut_mix own;
-    const hairlut_mix *mix = hairlut_mixture_at(model, shares, theta_r, offset, &own);
-    const int valid = hairlut_known(theta_r, phi_r, theta_i, phi_i - phi_i + offset) && mix->sum > 0.0f;
-    if (!valid)
-        return 0.0f;
-    const direction d = {theta_r, hairlut_wrap(phi_r, -hairlut_pi), theta_i, hairlut_wrap(phi_i, -hairlut_pi)};
-    const grid_row at = row_of(&model->lobes[mix->lobes[0]].theta, theta_r);
-    return mixed(model, mix, &d, &at, mix->count, 0.0f);
+    const hair h = hair_of(model, hairlut_mixture_at(model, shares, theta_r, offset, &own), theta_r, phi_r, offset);
+    return pdf_of_hair(&h, theta_i, phi_i);
 }
 
 #endif

@@ -3,7 +3,7 @@
  * x86-64, AArch64. The form in plain C gives the same numbers. hairlut_quad_load reads from multiples of 16 bytes, hairlut_quad_anywhere from any address. Of lanes:
  * hairlut_quad_where_equal(a, b, x) is x where a == b, else 0; hairlut_quad_swapped, those of each half exchanged;
  * hairlut_quad_list(a, first, list), how many are above 0, whose numbers from first on go to list, which has room for four;
- * hairlut_quad_count, how many of a are at most x, hairlut_quad_count_two, how many of a and b. */
+ * hairlut_quad_mask, a bit for each lane of a that is at most x; hairlut_quad_count, how many are, hairlut_quad_count_two, how many of a and b. */
 #ifndef HAIRLUT_QUAD_H
 #define HAIRLUT_QUAD_H
 
@@ -29,6 +29,12 @@ static inline float hairlut_constant(float c)
 #endif
     return c;
 }
+
+/* How many bits of 0 .. 255 are set: not every x86-64 has an instruction for it. */
+#define HAIRLUT_BITS_2(n) n, n + 1, n + 1, n + 2
+#define HAIRLUT_BITS_4(n) HAIRLUT_BITS_2(n), HAIRLUT_BITS_2(n + 1), HAIRLUT_BITS_2(n + 1), HAIRLUT_BITS_2(n + 2)
+#define HAIRLUT_BITS_6(n) HAIRLUT_BITS_4(n), HAIRLUT_BITS_4(n + 1), HAIRLUT_BITS_4(n + 1), HAIRLUT_BITS_4(n + 2)
+static const unsigned char hairlut_bits[256] = {HAIRLUT_BITS_6(0), HAIRLUT_BITS_6(1), HAIRLUT_BITS_6(1), HAIRLUT_BITS_6(2)};
 
 #if defined(HAIRLUT_QUAD_SSE2)
 typedef __m128 hairlut_quad;
@@ -125,15 +131,14 @@ static inline float hairlut_shifted(float s)
     return _mm_cvtss_f32(_mm_castsi128_ps(_mm_srli_epi32(_mm_castps_si128(hairlut_quad_of(s)), 2)));
 }
 
-/* How many bits of 0 .. 255 are set: not every x86-64 has an instruction for it. */
-#define HAIRLUT_BITS_2(n) n, n + 1, n + 1, n + 2
-#define HAIRLUT_BITS_4(n) HAIRLUT_BITS_2(n), HAIRLUT_BITS_2(n + 1), HAIRLUT_BITS_2(n + 1), HAIRLUT_BITS_2(n + 2)
-#define HAIRLUT_BITS_6(n) HAIRLUT_BITS_4(n), HAIRLUT_BITS_4(n + 1), HAIRLUT_BITS_4(n + 1), HAIRLUT_BITS_4(n + 2)
-static const unsigned char hairlut_bits[256] = {HAIRLUT_BITS_6(0), HAIRLUT_BITS_6(1), HAIRLUT_BITS_6(1), HAIRLUT_BITS_6(2)};
+static inline unsigned hairlut_quad_mask(hairlut_quad a, hairlut_quad x)
+{
+    return (unsigned)_mm_movemask_ps(_mm_cmple_ps(a, x));
+}
 
 static inline unsigned hairlut_quad_count(hairlut_quad a, hairlut_quad x)
 {
-    return hairlut_bits[_mm_movemask_ps(_mm_cmple_ps(a, x))];
+    return hairlut_bits[hairlut_quad_mask(a, x)];
 }
 
 static inline unsigned hairlut_quad_count_two(hairlut_quad a, hairlut_quad b, hairlut_quad x)
@@ -231,6 +236,12 @@ static inline hairlut_quad hairlut_quad_of_two(float a, float b)
 static inline float hairlut_shifted(float s)
 {
     return vget_lane_f32(vreinterpret_f32_u32(vshr_n_u32(vreinterpret_u32_f32(vdup_n_f32(s)), 2)), 0);
+}
+
+static inline unsigned hairlut_quad_mask(hairlut_quad a, hairlut_quad x)
+{
+    static const uint32_t bits[4] = {1, 2, 4, 8};
+    return vaddvq_u32(vandq_u32(vcleq_f32(a, x), vld1q_u32(bits)));
 }
 
 static inline unsigned hairlut_quad_count(hairlut_quad a, hairlut_quad x)
@@ -400,6 +411,14 @@ static inline float hairlut_shifted(float s)
     bits >>= 2;
     memcpy(&s, &bits, sizeof s);
     return s;
+}
+
+static inline unsigned hairlut_quad_mask(hairlut_quad a, hairlut_quad x)
+{
+    unsigned bits = 0;
+    for (int l = 0; l < 4; ++l)
+        bits |= (unsigned)(a.lane[l] <= x.lane[l]) << l;
+    return bits;
 }
 
 static inline unsigned hairlut_quad_count(hairlut_quad a, hairlut_quad x)

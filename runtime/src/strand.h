@@ -13,7 +13,8 @@ enum {
     HAIRLUT_MOST_GRIDS = HAIRLUT_MOST_TABLES + 2, /* one for each table, for the mixture, and the one without axes */
     HAIRLUT_MOST_SCALES = HAIRLUT_MAX_AXES * (HAIRLUT_MOST_TABLES + 1),
     HAIRLUT_CORNERS = 1 << HAIRLUT_MAX_AXES,
-    HAIRLUT_FLAT_COLUMNS = 4 * HAIRLUT_SMALL_GROUP + 2 /* of tables whose rows are searched as a whole */
+    HAIRLUT_FLAT_COLUMNS = 4 * HAIRLUT_SMALL_GROUP +
+        1 /* of tables whose rows are searched as a whole: a bit of 32 is left */
 };
 
 /* The nodes of one axis; tables with the same ones share them. */

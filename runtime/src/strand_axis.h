@@ -43,12 +43,26 @@ HAIRLUT_INLINE hairlut_oct hairlut_blend_oct(const hairlut_strand_search *s, con
     return sum;
 }
 
-/* How many of the eight blended texels of a small table's group are at most x; the changes to the row above stand behind them. */
-HAIRLUT_INLINE unsigned hairlut_strand_count_eight(const hairlut_strand_search *s, const float *group, hairlut_oct t,
-                                                   hairlut_oct x, int n)
+/* A bit for each of the eight blended texels of a small table's group that is at most x; the changes to the row above stand behind
+ * them. */
+HAIRLUT_INLINE unsigned hairlut_strand_mask(const hairlut_strand_search *s, const float *group, hairlut_oct t, hairlut_oct x,
+                                            int n)
 {
     const hairlut_oct from = hairlut_blend_oct(s, group, n), change = hairlut_blend_oct(s, group + HAIRLUT_SMALL_GROUP, n);
-    return hairlut_oct_count(hairlut_oct_add(from, hairlut_oct_mul(t, change)), x);
+    return hairlut_oct_mask(hairlut_oct_add(from, hairlut_oct_mul(t, change)), x);
+}
+
+/* hairlut_axis_search_small of a row of up to four groups, without waiting for the first of its two counts: the last texel of a group
+ * is the end of its block. */
+HAIRLUT_INLINE unsigned hairlut_strand_search_row(const hairlut_strand_search *s, const float *groups, int count,
+                                                  hairlut_oct t, hairlut_oct x, int n)
+{
+    unsigned bits = 0;
+    for (int g = 0; g < count; ++g)
+        bits |= hairlut_strand_mask(s, groups + g * HAIRLUT_LINE, t, x, n) << 8 * g;
+    const unsigned before =
+        ((bits >> 7 & 0x01010101u) * 0x08080808u) >> 24; /* cells of the blocks whose ends are at most x */
+    return before + hairlut_count_bits(bits >> before & 255);
 }
 
 /* Eight blended texels from p on, blended with those of the row above. */
@@ -93,16 +107,15 @@ HAIRLUT_INLINE void hairlut_strand_begin_search(hairlut_strand_search *s, float 
     const float x = hairlut_clamp(given, table->low, table->high);
     const float *groups = table->rows + s->first + (unsigned)s->row->j * (unsigned)table->stride;
     const hairlut_oct all = hairlut_oct_all(x), t = hairlut_oct_of(s->row->t, s->row->t);
-    unsigned cell = 0;
     s->groups = groups;
     s->x = x;
     s->given = given;
-    for (int g = 1; g <= table->groups; ++g)
-        cell += hairlut_strand_count_eight(s, groups + g * HAIRLUT_LINE, t, all, n);
-    if (table->groups == 0)
-        cell = table->small ? HAIRLUT_SMALL_GROUP * hairlut_strand_count_eight(s, groups, t, all, n)
-                            : (unsigned)table->axis->step * hairlut_strand_count_large(s, groups, t, all);
-    s->cell = cell;
+    if (table->groups > 0)
+        s->cell = hairlut_strand_search_row(s, groups + HAIRLUT_LINE, table->groups, t, all, n);
+    else if (table->small)
+        s->cell = HAIRLUT_SMALL_GROUP * hairlut_count_bits(hairlut_strand_mask(s, groups, t, all, n));
+    else
+        s->cell = (unsigned)table->axis->step * hairlut_strand_count_large(s, groups, t, all);
 }
 
 /* Finds the cell. */
@@ -114,7 +127,7 @@ HAIRLUT_INLINE void hairlut_strand_end_search(hairlut_strand_search *s, int n)
     if (s->table->groups > 0)
         return;
     if (s->table->small) {
-        cell += hairlut_strand_count_eight(s, groups + 2 * (size_t)cell, t, all, n);
+        cell += hairlut_count_bits(hairlut_strand_mask(s, groups + 2 * (size_t)cell, t, all, n));
     } else {
         cell += hairlut_strand_halve(s, groups + cell, t);
         cell += hairlut_strand_count_large(s, groups + cell, t, all);

@@ -6,23 +6,16 @@
 #include "one.h"
 #include "strand_axis.h"
 
-/* A strand: the corners of each grid of nodes, and the mixture there. */
+/* A direction in the hair of one strand: the corners of each grid of nodes, and the rows of theta_r on each grid of rows. */
 typedef struct strand {
-    hairlut_corners corners[HAIRLUT_MOST_GRIDS];
-    hairlut_mix mix;
-    int known; /* no parameter is NaN */
+    hair hair;
+    const hairlut_corners *corners;
+    float theta_i, i; /* i: phi_i in [-pi, pi) */
+    hairlut_row rows[HAIRLUT_MOST_TABLES];
 } strand;
 
-/* What a call reads: tables at a strand, and the rows of theta_r on each grid of rows. */
-typedef struct strand_view {
-    const hairlut_model *model;
-    const hairlut_corners *corners;
-    const hairlut_mix *mix;
-    direction d;
-    hairlut_row rows[HAIRLUT_MOST_TABLES];
-} strand_view;
-
-static void place_strand(const hairlut_model *model, const float *parameters, strand *s)
+/* The corners of all grids. Returns whether no parameter is NaN. */
+static int place_strand(const hairlut_model *model, const float *parameters, hairlut_corners *corners)
 {
     const hairlut_strands *strands = model->strands;
     float clamped[HAIRLUT_MAX_PARAMETERS];
@@ -32,41 +25,40 @@ static void place_strand(const hairlut_model *model, const float *parameters, st
         clamped[p] = hairlut_clamp(parameters[p], strands->least[p], strands->most[p]);
     }
     for (int g = 0; g < strands->grid_count; ++g)
-        hairlut_corners_of(&strands->grids[g], clamped, &s->corners[g]);
-    s->known = known;
+        hairlut_corners_of(&strands->grids[g], clamped, &corners[g]);
+    return known;
 }
 
-static void mix_strand(const hairlut_model *model, const float *shares, float theta_r, float offset, strand *s)
+static void mix_strand(const hairlut_model *model, const hairlut_corners *corners, const float *shares, float theta_r,
+                       float offset, hairlut_mix *mix)
 {
-    hairlut_mixture_fill(model, &s->corners[model->strands->mixture.grid], shares, theta_r, offset, &s->mix);
+    hairlut_mixture_fill(model, &corners[model->strands->mixture.grid], shares, theta_r, offset, mix);
 }
 
-/* All but the direction d.theta_i, d.i. */
-static inline void view_strand(const hairlut_model *model, const strand *s, float theta_r, float phi_r, strand_view *v)
+/* All but the direction. */
+HAIRLUT_INLINE void begin_strand(strand *v, const hair *h, const hairlut_corners *corners)
 {
-    v->model = model;
-    v->corners = s->corners;
-    v->mix = &s->mix;
-    v->d.theta_r = theta_r;
-    v->d.r = hairlut_wrap(phi_r, -hairlut_pi);
-    for (int g = 0; g < model->strands->row_count; ++g)
-        v->rows[g] = hairlut_axis_row(model->strands->row_axes[g], theta_r);
+    const hairlut_strands *strands = h->model->strands;
+    v->hair = *h;
+    v->corners = corners;
+    for (int g = 0; g < strands->row_count; ++g)
+        v->rows[g] = hairlut_axis_row(strands->row_axes[g], h->theta_r);
 }
 
-HAIRLUT_INLINE void start_search(const strand_view *v, const hairlut_strand_table *table, hairlut_strand_search *s)
+HAIRLUT_INLINE void start_search(const strand *v, const hairlut_strand_table *table, hairlut_strand_search *s)
 {
     hairlut_strand_start(s, table, v->rows, v->corners);
 }
 
 /* hairlut_lobe_draw */
-HAIRLUT_INLINE hairlut_drawn draw_strand(const strand_view *v, int k, float u_theta, float u_phi)
+HAIRLUT_INLINE hairlut_drawn draw_strand(const strand *v, int k, float u_theta, float u_phi)
 {
     hairlut_strand_search theta, phi;
-    start_search(v, &v->model->strands->theta[k], &theta);
+    start_search(v, &v->hair.model->strands->theta[k], &theta);
     const hairlut_placed a = hairlut_strand_find_place(&theta, u_theta, theta.table->nodes.count);
-    if (v->model->lobes[k].uniform)
+    if (v->hair.model->lobes[k].uniform)
         return hairlut_draw_uniform(&a, u_phi);
-    start_search(v, &v->model->strands->phi[k], &phi);
+    start_search(v, &v->hair.model->strands->phi[k], &phi);
     const hairlut_placed b = hairlut_strand_find_place(&phi, u_phi, phi.table->nodes.count);
     return hairlut_draw_both(&a, &b);
 }
@@ -87,26 +79,28 @@ static inline void wrap_four(hairlut_quad x, float *wrapped)
 }
 
 /* hairlut_table_azimuth of all lobes */
-static inline void table_azimuths(const strand_view *v, float *azimuth)
+static inline void table_azimuths(const strand *v, float *azimuth)
 {
-    const hairlut_quad i = hairlut_quad_all(v->d.i), r = hairlut_quad_all(v->d.r), side = hairlut_quad_all(v->mix->side);
-    for (int k = 0; k < v->model->lobe_count; k += 4) {
+    const hairlut_quad i = hairlut_quad_all(v->i), r = hairlut_quad_all(v->hair.r),
+                       side = hairlut_quad_all(v->hair.mix->side);
+    for (int k = 0; k < v->hair.model->lobe_count; k += 4) {
         const hairlut_quad relative =
-            hairlut_quad_add(i, hairlut_quad_mul(hairlut_quad_anywhere(v->model->strands->sign + k), r));
-        const hairlut_quad x = hairlut_quad_sub(hairlut_quad_mul(side, relative), hairlut_quad_anywhere(v->mix->turn + k));
+            hairlut_quad_add(i, hairlut_quad_mul(hairlut_quad_anywhere(v->hair.model->strands->sign + k), r));
+        const hairlut_quad x =
+            hairlut_quad_sub(hairlut_quad_mul(side, relative), hairlut_quad_anywhere(v->hair.mix->turn + k));
         wrap_four(x, azimuth + k);
     }
 }
 
 /* Where the direction lies on the axes of lobe k is found by two searches, which are begun; of a uniform azimuth, the second is not
  * used. Tables have n corners, or any number where n is 0. */
-HAIRLUT_INLINE void begin_lobe(const strand_view *v, int k, float azimuth, hairlut_strand_search search[2], int n)
+HAIRLUT_INLINE void begin_lobe(const strand *v, int k, float azimuth, hairlut_strand_search search[2], int n)
 {
-    start_search(v, &v->model->strands->theta[k], &search[0]);
-    hairlut_strand_begin_search(&search[0], v->d.theta_i, n > 0 ? n : search[0].table->nodes.count);
-    if (v->model->lobes[k].uniform)
+    start_search(v, &v->hair.model->strands->theta[k], &search[0]);
+    hairlut_strand_begin_search(&search[0], v->theta_i, n > 0 ? n : search[0].table->nodes.count);
+    if (v->hair.model->lobes[k].uniform)
         return;
-    start_search(v, &v->model->strands->phi[k], &search[1]);
+    start_search(v, &v->hair.model->strands->phi[k], &search[1]);
     hairlut_strand_begin_search(&search[1], azimuth, n > 0 ? n : search[1].table->nodes.count);
 }
 
@@ -127,11 +121,11 @@ HAIRLUT_INLINE void read_lobe(const hairlut_strand_search search[2], int uniform
 }
 
 /* pdf plus the sum of weight * density over the lobes that have a weight, but for the one in place `out`, as in `mixed`. */
-HAIRLUT_INLINE float mixed_of(const strand_view *v, int out, float pdf, int n)
+HAIRLUT_INLINE float mixed_of(const strand *v, int out, float pdf, int n)
 {
     hairlut_strand_search searches[2 * HAIRLUT_MAX_LOBES];
-    const hairlut_mix *mix = v->mix;
-    const hairlut_lobe *lobes = v->model->lobes;
+    const hairlut_mix *mix = v->hair.mix;
+    const hairlut_lobe *lobes = v->hair.model->lobes;
     const int count = mix->count - (out < mix->count);
     float azimuth[HAIRLUT_MAX_LOBES];
     hairlut_found found[4];
@@ -158,52 +152,67 @@ HAIRLUT_INLINE float mixed_of(const strand_view *v, int out, float pdf, int n)
 }
 
 /* For any number of corners: apart, as it would crowd the other out of the instruction cache. */
-static HAIRLUT_APART float mixed_any(const strand_view *v, int out, float pdf)
+static HAIRLUT_APART float mixed_any(const strand *v, int out, float pdf)
 {
     return mixed_of(v, out, pdf, 0);
 }
 
-static float mixed_strand(const strand_view *v, int out, float pdf)
+static float mixed_strand(const strand *v, int out, float pdf)
 {
-    return v->model->strands->pairs ? mixed_of(v, out, pdf, 2) : mixed_any(v, out, pdf);
+    return v->hair.model->strands->pairs ? mixed_of(v, out, pdf, 2) : mixed_any(v, out, pdf);
+}
+
+/* sample_of_hair */
+HAIRLUT_INLINE hairlut_sample sample_of_strand(const hair *h, const hairlut_corners *corners, float u_lobe, float u_theta,
+                                               float u_phi)
+{
+    strand v;
+    const hairlut_mix *mix = h->mix;
+    const int chosen = hairlut_mixture_choose(mix, u_lobe), k = mix->lobes[chosen];
+    const hairlut_lobe *lobe = &h->model->lobes[k];
+    begin_strand(&v, h, corners);
+    const hairlut_drawn drawn = draw_strand(&v, k, u_theta, u_phi);
+    v.theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta);
+    v.i = lobe->uniform ? drawn.phi : hairlut_incident_azimuth(lobe, h->r, drawn.phi, mix->turn[k], mix->side);
+    if (!h->known || isunordered(u_theta, u_phi) || u_lobe != u_lobe)
+        return hairlut_finish(v.theta_i, v.i, 0.0f);
+    return hairlut_finish(v.theta_i, v.i, mixed_strand(&v, chosen, mix->weight[k] * drawn.pdf));
+}
+
+/* pdf_of_hair */
+HAIRLUT_INLINE float pdf_of_strand(const hair *h, const hairlut_corners *corners, float theta_i, float phi_i)
+{
+    strand v;
+    if (!h->known || !hairlut_known(theta_i, phi_i, 0.0f, 0.0f))
+        return 0.0f;
+    begin_strand(&v, h, corners);
+    v.theta_i = theta_i;
+    v.i = hairlut_wrap(phi_i, -hairlut_pi);
+    return mixed_strand(&v, h->mix->count, 0.0f);
 }
 
 static hairlut_sample sample_strand_one(const hairlut_model *model, const float *parameters, const float *shares,
                                         float theta_r, float phi_r, float offset, float u_lobe, float u_theta, float u_phi)
 {
-    strand s;
-    strand_view v;
-    place_strand(model, parameters, &s);
-    view_strand(model, &s, theta_r, phi_r, &v);
-    mix_strand(model, shares, theta_r, offset, &s);
-    const int chosen = hairlut_mixture_choose(&s.mix, u_lobe), k = s.mix.lobes[chosen];
-    const hairlut_lobe *lobe = &model->lobes[k];
-    const hairlut_drawn drawn = draw_strand(&v, k, u_theta, u_phi);
-    const float theta_i = hairlut_axis_inside(&lobe->theta, drawn.theta);
-    const float phi_i =
-        lobe->uniform ? drawn.phi : hairlut_incident_azimuth(lobe, v.d.r, drawn.phi, s.mix.turn[k], s.mix.side);
-    const int valid =
-        s.known && hairlut_known(theta_r, phi_r, u_theta, u_phi) && !isunordered(offset, u_lobe) && s.mix.sum > 0.0f;
-    if (!valid)
-        return hairlut_finish(theta_i, phi_i, 0.0f);
-    v.d.theta_i = theta_i;
-    v.d.i = phi_i;
-    return hairlut_finish(theta_i, phi_i, mixed_strand(&v, chosen, s.mix.weight[k] * drawn.pdf));
+    hairlut_corners corners[HAIRLUT_MOST_GRIDS];
+    hairlut_mix mix;
+    const int known = place_strand(model, parameters, corners);
+    mix_strand(model, corners, shares, theta_r, offset, &mix);
+    hair h = hair_of(model, &mix, theta_r, phi_r, offset);
+    h.known &= known;
+    return sample_of_strand(&h, corners, u_lobe, u_theta, u_phi);
 }
 
 static float pdf_strand_one(const hairlut_model *model, const float *parameters, const float *shares, float theta_r,
                             float phi_r, float offset, float theta_i, float phi_i)
 {
-    strand s;
-    strand_view v;
-    place_strand(model, parameters, &s);
-    mix_strand(model, shares, theta_r, offset, &s);
-    if (!s.known || !hairlut_known(theta_r, phi_r, theta_i, phi_i - phi_i + offset) || !(s.mix.sum > 0.0f))
-        return 0.0f;
-    view_strand(model, &s, theta_r, phi_r, &v);
-    v.d.theta_i = theta_i;
-    v.d.i = hairlut_wrap(phi_i, -hairlut_pi);
-    return mixed_strand(&v, s.mix.count, 0.0f);
+    hairlut_corners corners[HAIRLUT_MOST_GRIDS];
+    hairlut_mix mix;
+    const int known = place_strand(model, parameters, corners);
+    mix_strand(model, corners, shares, theta_r, offset, &mix);
+    hair h = hair_of(model, &mix, theta_r, phi_r, offset);
+    h.known &= known;
+    return pdf_of_strand(&h, corners, theta_i, phi_i);
 }
 
 #endif

@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "hairlut.h"
 
@@ -69,6 +70,11 @@ static inline void check_strand(const hairlut_model *model, const query *q, floa
     const hairlut_sample s =
         hairlut_sample_strand(model, strand, NULL, q->theta_r, q->phi_r, q->offset, q->u_lobe, q->u_theta, q->u_phi);
     const float pdf = hairlut_pdf_strand(model, strand, NULL, q->theta_r, q->phi_r, q->offset, s.theta_i, s.phi_i);
+    hairlut_viewer viewer;
+    hairlut_viewer_at(&viewer, model, strand, NULL, q->theta_r, q->phi_r, q->offset);
+    const hairlut_sample again = hairlut_viewer_sample(&viewer, q->u_lobe, q->u_theta, q->u_phi);
+    const float pdf_again = hairlut_viewer_pdf(&viewer, s.theta_i, s.phi_i);
+    REQUIRE(memcmp(&again, &s, sizeof s) == 0 && memcmp(&pdf_again, &pdf, sizeof pdf) == 0);
     check_sample(s);
     REQUIRE(isfinite(pdf) && pdf >= 0.0f);
     REQUIRE(!no_number || (s.pdf_angle == 0.0f && pdf == 0.0f));

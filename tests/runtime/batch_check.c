@@ -419,7 +419,7 @@ int main(void)
 {
     const hairlut_batch public_set = {"public",
                                       {hairlut_sample_lobe, hairlut_pdf_lobe, hairlut_sample_hair, hairlut_pdf_hair,
-                                       hairlut_sample_strand, hairlut_pdf_strand},
+                                       hairlut_sample_strand, hairlut_pdf_strand, NULL, NULL, NULL},
                                       hairlut_sample_lobe_n,
                                       hairlut_pdf_lobe_n,
                                       hairlut_sample_hair_n,

@@ -78,6 +78,23 @@ static void check_strand_directions(const hairlut_model *model)
     REQUIRE(hairlut_pdf_strand(model, strand, NULL, 0.1f, 0.2f, 0.3f, 0.4f, INFINITY) == 0.0f);
 }
 
+/* Viewers: as the functions above. */
+static void check_viewers(const hairlut_model *model)
+{
+    static const float none[HAIRLUT_MAX_LOBES], strand[HAIRLUT_MAX_PARAMETERS], half[] = {0.5f, 0.5f, 0.5f, 0.5f, NAN};
+    const float *parameters[] = {NULL, strand, half}, *shares[] = {NULL, none, half};
+    for (size_t k = 0; k < 9; ++k) {
+        hairlut_viewer viewer;
+        hairlut_viewer_at(&viewer, model, parameters[k / 3], hairlut_lobe_count(model) <= 4 ? shares[k % 3] : NULL, 0.1f,
+                          0.2f, 0.3f);
+        const hairlut_sample s = hairlut_viewer_sample(&viewer, 0.4f, 0.5f, 0.6f);
+        const float pdf = hairlut_viewer_pdf(&viewer, s.theta_i, s.phi_i);
+        check_sample(s);
+        REQUIRE((pdf > 0.0f) == (s.pdf_angle > 0.0f));
+        REQUIRE(hairlut_viewer_pdf(&viewer, 4.0f, 0.5f) == 0.0f && hairlut_viewer_pdf(&viewer, 0.4f, INFINITY) == 0.0f);
+    }
+}
+
 /* Values of the parameters in their ranges, beyond them, and no numbers. */
 static void check_strands(const hairlut_model *model)
 {
@@ -100,6 +117,7 @@ static void check_strands(const hairlut_model *model)
         REQUIRE(isfinite(out[4][i]));
     }
     check_strand_directions(model);
+    check_viewers(model);
 }
 
 /* What a model says of its parameters. */

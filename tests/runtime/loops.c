@@ -76,6 +76,29 @@ LOOP void loop_pdf_strand(const hairlut_model *model, const float *parameters, c
                                     phi_r[i], offset[i], theta_i[i], phi_i[i]);
 }
 
+/* Both of each viewer, in the order density, sample, density of a copy; memory that was not zero before. Returns whether both
+ * densities are the same. */
+LOOP int loop_viewer(const hairlut_model *model, const float *parameters, const float *shares, size_t n,
+                     const float *theta_r, const float *phi_r, const float *offset, const float *u_lobe,
+                     const float *u_theta, const float *u_phi, const float *theta_i, const float *phi_i, hairlut_sample *out,
+                     float *pdf)
+{
+    int same = 1;
+    for (size_t i = 0; i < n; ++i) {
+        hairlut_viewer viewer, copy;
+        memset(&viewer, 0xA5, sizeof viewer);
+        hairlut_viewer_at(&viewer, model, parameters_of(model, parameters, i), shares_of(model, shares, i), theta_r[i],
+                          phi_r[i], offset[i]);
+        pdf[i] = hairlut_viewer_pdf(&viewer, theta_i[i], phi_i[i]);
+        copy = viewer;
+        memset(&viewer, 0x5A, sizeof viewer);
+        out[i] = hairlut_viewer_sample(&copy, u_lobe[i], u_theta[i], u_phi[i]);
+        const float again = hairlut_viewer_pdf(&copy, theta_i[i], phi_i[i]);
+        same &= memcmp(&again, &pdf[i], sizeof again) == 0;
+    }
+    return same;
+}
+
 static const hairlut_axis *axis_of(const hairlut_model *model, int lobe, int angle)
 {
     return angle ? &model->lobes[lobe].phi : &model->lobes[lobe].theta;

@@ -57,8 +57,10 @@ def baked(
     lobes: int = 3,
     turned: bool = True,
     seed: int = 0,
+    apart: bool = False,
 ) -> BakedModel:
-    """The tables of `brown` over parameters: turns anywhere, a fifth of the shares 0."""
+    """The tables of `brown` over parameters: turns anywhere, a fifth of the shares 0. apart: each table has
+    nodes of its own."""
     random = np.random.default_rng(seed)
     plain = exr.read_model(ROOT / "luts" / "brown")
     theta_axes = tuple(axis_of(name, 3 + k, random) for k, name in enumerate(theta))
@@ -66,6 +68,9 @@ def baked(
     made = []
     for k in range(lobes):
         lobe = plain.lobes[k % len(plain.lobes)]
+        if apart:
+            theta_axes = tuple(axis_of(name, 3 + k, random) for name in theta)
+            phi_axes = tuple(axis_of(name, 4 + k, random) for name in phi)
         tables = [
             dataclasses.replace(over(t, axes, random), name=f"l{k}_{angle}")
             for t, axes, angle in ((lobe.theta, theta_axes, "theta"), (lobe.phi, phi_axes, "phi"))

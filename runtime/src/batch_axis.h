@@ -44,7 +44,7 @@ static inline real clamp(real x, real low, real high)
 }
 
 /* hairlut_axis_row */
-static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
+HAIRLUT_INLINE whole find_row(const hairlut_axis *axis, real theta_r, real *t)
 {
     const real scaled = mul(sub(theta_r, all(axis->row_origin)), all(axis->row_scale));
     const real r = clamp(scaled, all(0.0f), all(axis->row_last));
@@ -54,7 +54,7 @@ static inline whole find_row(const hairlut_axis *axis, real theta_r, real *t)
 }
 
 /* The offset of cell i, counted from an end, of row j. */
-static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
+HAIRLUT_INLINE whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask high)
 {
     const whole cell = imul(i, iall(axis->pitch));
     const whole half = iwhere(high, iall((int)(axis->ends[1] - axis->ends[0])));
@@ -62,7 +62,7 @@ static inline whole cell_offset(const hairlut_axis *axis, whole j, whole i, mask
 }
 
 /* hairlut_axis_place, and where to read */
-static inline void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, axis_samples *q)
+HAIRLUT_INLINE void place(const hairlut_axis *axis, size_t n, const float *theta_r, const float *u, axis_samples *q)
 {
     for (size_t s = 0; s < n; s += LANES) {
         real t;
@@ -143,7 +143,7 @@ HAIRLUT_INLINE void search(const hairlut_axis *axis, size_t n, axis_searches *q,
 }
 
 /* hairlut_axis_blend, of cells of the row below and of that above; t is that of hairlut_row */
-static inline cells blend_rows(const real p[HAIRLUT_CELL], const real q[HAIRLUT_CELL], real t)
+HAIRLUT_INLINE cells blend_rows(const real p[HAIRLUT_CELL], const real q[HAIRLUT_CELL], real t)
 {
     const real scale = all(HAIRLUT_SCALE), below = mul(scale, sub(all(1.0f), t)), above = mul(scale, t);
     const cells cell = {add(mul(below, p[0]), mul(above, q[0])), add(mul(below, p[1]), mul(above, q[1])),
@@ -151,7 +151,7 @@ static inline cells blend_rows(const real p[HAIRLUT_CELL], const real q[HAIRLUT_
     return cell;
 }
 
-static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
+HAIRLUT_INLINE cells load_cells(const hairlut_axis *axis, const int *at, real t)
 {
     real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
     gather4(axis->ends[0], at, p);
@@ -160,7 +160,7 @@ static inline cells load_cells(const hairlut_axis *axis, const int *at, real t)
 }
 
 /* The cells of samples s .. s+LANES-1, and their knots */
-static inline void store_samples(const hairlut_axis *axis, axis_samples *q, size_t s, cells cell)
+HAIRLUT_INLINE void store_samples(const hairlut_axis *axis, axis_samples *q, size_t s, cells cell)
 {
     real knot[HAIRLUT_KNOT];
     gather4(axis->knots, q->knot + s, knot);
@@ -172,14 +172,14 @@ static inline void store_samples(const hairlut_axis *axis, axis_samples *q, size
     store(q->d1 + s, cell.d1);
 }
 
-static inline void fetch_samples(const hairlut_axis *axis, size_t n, axis_samples *q)
+HAIRLUT_INLINE void fetch_samples(const hairlut_axis *axis, size_t n, axis_samples *q)
 {
     for (size_t s = 0; s < n; s += LANES)
         store_samples(axis, q, s, load_cells(axis, q->at + s, load(q->t + s)));
 }
 
 /* The cells of directions s .. s+LANES-1 */
-static inline void store_searches(axis_searches *q, size_t s, cells cell)
+HAIRLUT_INLINE void store_searches(axis_searches *q, size_t s, cells cell)
 {
     const real w = magnitude(cell.w);
     const real beyond = flipped(sub(mul(load(q->x + s), all(HAIRLUT_SCALE)), cell.x0), cell.w);
@@ -189,14 +189,14 @@ static inline void store_searches(axis_searches *q, size_t s, cells cell)
     store(q->d1 + s, magnitude(cell.d1));
 }
 
-static inline void fetch_searches(const hairlut_axis *axis, size_t n, axis_searches *q)
+HAIRLUT_INLINE void fetch_searches(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     for (size_t s = 0; s < n; s += LANES)
         store_searches(q, s, load_cells(axis, q->at + s, load(q->t + s)));
 }
 
 /* hairlut_draw_two, of an axis, of samples s .. s+LANES-1 that were placed and fetched */
-static inline real draw(const axis_samples *q, size_t s, real *slope)
+HAIRLUT_INLINE real draw(const axis_samples *q, size_t s, real *slope)
 {
     const real along = load(q->m + s), w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), twice = add(w, w);
     const real xi = larger(along, all(0.0f)), rest = larger(sub(all(1.0f), along), all(0.0f));
@@ -208,7 +208,7 @@ static inline real draw(const axis_samples *q, size_t s, real *slope)
 }
 
 /* Begins a search. Returns whether the domain contains x. */
-static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, axis_searches *q, size_t s)
+HAIRLUT_INLINE mask begin_search(const hairlut_axis *axis, real theta_r, real x, axis_searches *q, size_t s)
 {
     const real low = all(axis->low), high = all(axis->high);
     real t;
@@ -221,7 +221,7 @@ static inline mask begin_search(const hairlut_axis *axis, real theta_r, real x, 
 }
 
 /* The rest of the search, and the cells. */
-static inline void end_search(const hairlut_axis *axis, size_t n, axis_searches *q)
+HAIRLUT_INLINE void end_search(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
     if (HAIRLUT_IS_SMALL(axis->columns))
         search(axis, n, q, HAIRLUT_SMALL_GROUP);
@@ -231,7 +231,7 @@ static inline void end_search(const hairlut_axis *axis, size_t n, axis_searches 
 }
 
 /* hairlut_invert_four, of an axis: bend and root of directions s .. s+LANES-1 */
-static inline real inverse(const axis_searches *q, size_t s, real *root_of)
+HAIRLUT_INLINE real inverse(const axis_searches *q, size_t s, real *root_of)
 {
     const real w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), from = load(q->x + s), to = sub(w, from);
     const real twice = add(w, w), wx = mul(twice, from), wz = mul(twice, to), h = load(q->width + s);

@@ -224,25 +224,37 @@ HAIRLUT_INLINE void fetch_strand_samples(const hairlut_axis *axis, const strand_
 
 /* ---- with parameters or without ------------------------------------------------------------------------------- */
 
-/* Most tables have one axis: it gets code of its own. */
-static inline void end_search_at(const hairlut_axis *axis, const strand_table *table, size_t n, axis_searches *q)
+/* Most tables have one axis: it gets code of its own. Apart from the code without parameters, which is inlined where it is used. */
+HAIRLUT_APART static void end_strand_search(const hairlut_axis *axis, const strand_table *table, size_t n, axis_searches *q)
 {
-    if (!table->spacing)
-        end_search(axis, n, q);
-    else if (table->axes == 1)
+    if (table->axes == 1)
         find_strand_cells(axis, table, n, q, 1);
     else
         find_strand_cells(axis, table, n, q, table->axes);
 }
 
-static inline void fetch_samples_at(const hairlut_axis *axis, const strand_table *table, size_t n, axis_samples *q)
+HAIRLUT_APART static void fetch_strands(const hairlut_axis *axis, const strand_table *table, size_t n, axis_samples *q)
 {
-    if (!table->spacing)
-        fetch_samples(axis, n, q);
-    else if (table->axes == 1)
+    if (table->axes == 1)
         fetch_strand_samples(axis, table, n, q, 1);
     else
         fetch_strand_samples(axis, table, n, q, table->axes);
+}
+
+HAIRLUT_INLINE void end_search_at(const hairlut_axis *axis, const strand_table *table, size_t n, axis_searches *q)
+{
+    if (table->spacing)
+        end_strand_search(axis, table, n, q);
+    else
+        end_search(axis, n, q);
+}
+
+HAIRLUT_INLINE void fetch_samples_at(const hairlut_axis *axis, const strand_table *table, size_t n, axis_samples *q)
+{
+    if (table->spacing)
+        fetch_strands(axis, table, n, q);
+    else
+        fetch_samples(axis, n, q);
 }
 
 #endif

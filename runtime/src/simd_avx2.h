@@ -13,48 +13,48 @@ typedef __m256 mask;
 enum { LANES = 8 };
 
 /* clang-format off */
-static inline real load(const float *p) { return _mm256_loadu_ps(p); }
-static inline void store(float *p, real a) { _mm256_storeu_ps(p, a); }
-static inline real all(float a) { return _mm256_set1_ps(a); }
-static inline real add(real a, real b) { return _mm256_add_ps(a, b); }
-static inline real sub(real a, real b) { return _mm256_sub_ps(a, b); }
-static inline real mul(real a, real b) { return _mm256_mul_ps(a, b); }
-static inline real over(real a, real b) { return _mm256_div_ps(a, b); }
-static inline real root(real a) { return _mm256_sqrt_ps(a); }
-static inline real smaller(real a, real b) { return _mm256_min_ps(a, b); }
-static inline real larger(real a, real b) { return _mm256_max_ps(a, b); }
-static inline real magnitude(real a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
-static inline mask greater(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GT_OQ); }
-static inline mask at_least(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
-static inline mask numbers(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_ORD_Q); }
-static inline mask both(mask a, mask b) { return _mm256_and_ps(a, b); }
-static inline int every(mask m) { return _mm256_movemask_ps(m) == 0xff; }
-static inline real choose(mask m, real a, real b) { return _mm256_blendv_ps(b, a, m); }
-static inline real flipped(real a, real s) { return _mm256_xor_ps(a, _mm256_and_ps(s, _mm256_set1_ps(-0.0f))); }
-static inline real by_sign(real a, real negative, real positive) { return _mm256_blendv_ps(positive, negative, a); }
+HAIRLUT_INLINE real load(const float *p) { return _mm256_loadu_ps(p); }
+HAIRLUT_INLINE void store(float *p, real a) { _mm256_storeu_ps(p, a); }
+HAIRLUT_INLINE real all(float a) { return _mm256_set1_ps(a); }
+HAIRLUT_INLINE real add(real a, real b) { return _mm256_add_ps(a, b); }
+HAIRLUT_INLINE real sub(real a, real b) { return _mm256_sub_ps(a, b); }
+HAIRLUT_INLINE real mul(real a, real b) { return _mm256_mul_ps(a, b); }
+HAIRLUT_INLINE real over(real a, real b) { return _mm256_div_ps(a, b); }
+HAIRLUT_INLINE real root(real a) { return _mm256_sqrt_ps(a); }
+HAIRLUT_INLINE real smaller(real a, real b) { return _mm256_min_ps(a, b); }
+HAIRLUT_INLINE real larger(real a, real b) { return _mm256_max_ps(a, b); }
+HAIRLUT_INLINE real magnitude(real a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
+HAIRLUT_INLINE mask greater(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GT_OQ); }
+HAIRLUT_INLINE mask at_least(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
+HAIRLUT_INLINE mask numbers(real a, real b) { return _mm256_cmp_ps(a, b, _CMP_ORD_Q); }
+HAIRLUT_INLINE mask both(mask a, mask b) { return _mm256_and_ps(a, b); }
+HAIRLUT_INLINE int every(mask m) { return _mm256_movemask_ps(m) == 0xff; }
+HAIRLUT_INLINE real choose(mask m, real a, real b) { return _mm256_blendv_ps(b, a, m); }
+HAIRLUT_INLINE real flipped(real a, real s) { return _mm256_xor_ps(a, _mm256_and_ps(s, _mm256_set1_ps(-0.0f))); }
+HAIRLUT_INLINE real by_sign(real a, real negative, real positive) { return _mm256_blendv_ps(positive, negative, a); }
 
-static inline whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
-static inline void istore(int *p, whole a) { _mm256_storeu_si256((__m256i *)p, a); }
-static inline whole iall(int a) { return _mm256_set1_epi32(a); }
-static inline whole iadd(whole a, whole b) { return _mm256_add_epi32(a, b); }
-static inline whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
-static inline whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
-static inline whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
-static inline whole iproduct(whole a, whole b) { return _mm256_mullo_epi32(a, b); }
-static inline mask igreater(whole a, whole b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b)); }
-static inline whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
-static inline whole truncated(real a) { return _mm256_cvttps_epi32(a); }
-static inline real shifted(real a) { return _mm256_castsi256_ps(_mm256_srli_epi32(_mm256_castps_si256(a), 2)); }
-static inline whole as_whole(real a) { return _mm256_castps_si256(a); }
-static inline real converted(whole a) { return _mm256_cvtepi32_ps(a); }
+HAIRLUT_INLINE whole iload(const int *p) { return _mm256_loadu_si256((const __m256i *)p); }
+HAIRLUT_INLINE void istore(int *p, whole a) { _mm256_storeu_si256((__m256i *)p, a); }
+HAIRLUT_INLINE whole iall(int a) { return _mm256_set1_epi32(a); }
+HAIRLUT_INLINE whole iadd(whole a, whole b) { return _mm256_add_epi32(a, b); }
+HAIRLUT_INLINE whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
+HAIRLUT_INLINE whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
+HAIRLUT_INLINE whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
+HAIRLUT_INLINE whole iproduct(whole a, whole b) { return _mm256_mullo_epi32(a, b); }
+HAIRLUT_INLINE mask igreater(whole a, whole b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b)); }
+HAIRLUT_INLINE whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
+HAIRLUT_INLINE whole truncated(real a) { return _mm256_cvttps_epi32(a); }
+HAIRLUT_INLINE real shifted(real a) { return _mm256_castsi256_ps(_mm256_srli_epi32(_mm256_castps_si256(a), 2)); }
+HAIRLUT_INLINE whole as_whole(real a) { return _mm256_castps_si256(a); }
+HAIRLUT_INLINE real converted(whole a) { return _mm256_cvtepi32_ps(a); }
 /* clang-format on */
 
-static inline real quads(const float *p, const int *at)
+HAIRLUT_INLINE real quads(const float *p, const int *at)
 {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + at[0])), _mm_loadu_ps(p + at[4]), 1);
 }
 
-static inline void gather4(const float *p, const int *at, real x[4])
+HAIRLUT_INLINE void gather4(const float *p, const int *at, real x[4])
 {
     const real r0 = quads(p, at), r1 = quads(p, at + 1), r2 = quads(p, at + 2), r3 = quads(p, at + 3);
     const __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(r0, r1)), b = _mm256_castps_pd(_mm256_unpackhi_ps(r0, r1));
@@ -65,13 +65,13 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(b, d));
 }
 
-static inline __m128 two_links(const hairlut_link *links, const int *at)
+HAIRLUT_INLINE __m128 two_links(const hairlut_link *links, const int *at)
 {
     const __m128 low = _mm_castpd_ps(_mm_load_sd((const double *)(const void *)(links + at[0])));
     return _mm_loadh_pi(low, (const __m64 *)(const void *)(links + at[1]));
 }
 
-static inline void gather_links(const hairlut_link *links, const int *at, whole *offset, real *h)
+HAIRLUT_INLINE void gather_links(const hairlut_link *links, const int *at, whole *offset, real *h)
 {
     const real a = _mm256_set_m128(two_links(links, at + 4), two_links(links, at));
     const real b = _mm256_set_m128(two_links(links, at + 6), two_links(links, at + 2));
@@ -80,7 +80,7 @@ static inline void gather_links(const hairlut_link *links, const int *at, whole 
 }
 
 /* -1 in the lanes of the eight blended texels that are at most x */
-static inline whole at_most(real from, real change, real t, real x)
+HAIRLUT_INLINE whole at_most(real from, real change, real t, real x)
 {
     return _mm256_castps_si256(_mm256_cmp_ps(add(from, mul(t, change)), x, _CMP_LE_OQ));
 }

@@ -13,52 +13,52 @@ typedef uint32x4_t mask;
 enum { LANES = 4 };
 
 /* clang-format off */
-static inline real load(const float *p) { return vld1q_f32(p); }
-static inline void store(float *p, real a) { vst1q_f32(p, a); }
-static inline real all(float a) { return vdupq_n_f32(a); }
-static inline real add(real a, real b) { return vaddq_f32(a, b); }
-static inline real sub(real a, real b) { return vsubq_f32(a, b); }
-static inline real mul(real a, real b) { return vmulq_f32(a, b); }
-static inline real over(real a, real b) { return vdivq_f32(a, b); }
-static inline real root(real a) { return vsqrtq_f32(a); }
-static inline real magnitude(real a) { return vabsq_f32(a); }
-static inline mask greater(real a, real b) { return vcgtq_f32(a, b); }
-static inline mask at_least(real a, real b) { return vcgeq_f32(a, b); }
-static inline mask both(mask a, mask b) { return vandq_u32(a, b); }
-static inline int every(mask m) { return vminvq_u32(m) != 0; }
-static inline mask numbers(real a, real b) { return both(vceqq_f32(a, a), vceqq_f32(b, b)); }
-static inline real choose(mask m, real a, real b) { return vbslq_f32(m, a, b); }
+HAIRLUT_INLINE real load(const float *p) { return vld1q_f32(p); }
+HAIRLUT_INLINE void store(float *p, real a) { vst1q_f32(p, a); }
+HAIRLUT_INLINE real all(float a) { return vdupq_n_f32(a); }
+HAIRLUT_INLINE real add(real a, real b) { return vaddq_f32(a, b); }
+HAIRLUT_INLINE real sub(real a, real b) { return vsubq_f32(a, b); }
+HAIRLUT_INLINE real mul(real a, real b) { return vmulq_f32(a, b); }
+HAIRLUT_INLINE real over(real a, real b) { return vdivq_f32(a, b); }
+HAIRLUT_INLINE real root(real a) { return vsqrtq_f32(a); }
+HAIRLUT_INLINE real magnitude(real a) { return vabsq_f32(a); }
+HAIRLUT_INLINE mask greater(real a, real b) { return vcgtq_f32(a, b); }
+HAIRLUT_INLINE mask at_least(real a, real b) { return vcgeq_f32(a, b); }
+HAIRLUT_INLINE mask both(mask a, mask b) { return vandq_u32(a, b); }
+HAIRLUT_INLINE int every(mask m) { return vminvq_u32(m) != 0; }
+HAIRLUT_INLINE mask numbers(real a, real b) { return both(vceqq_f32(a, a), vceqq_f32(b, b)); }
+HAIRLUT_INLINE real choose(mask m, real a, real b) { return vbslq_f32(m, a, b); }
 /* clang-format on */
-static inline real flipped(real a, real s)
+HAIRLUT_INLINE real flipped(real a, real s)
 {
     const uint32x4_t sign = vandq_u32(vreinterpretq_u32_f32(s), vdupq_n_u32(0x80000000u));
     return vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a), sign));
 }
-static inline real by_sign(real a, real negative, real positive)
+HAIRLUT_INLINE real by_sign(real a, real negative, real positive)
 {
     return choose(vreinterpretq_u32_s32(vshrq_n_s32(vreinterpretq_s32_f32(a), 31)), negative, positive);
 }
 /* clang-format off */
-static inline real smaller(real a, real b) { return choose(greater(b, a), a, b); }
-static inline real larger(real a, real b) { return choose(greater(a, b), a, b); }
+HAIRLUT_INLINE real smaller(real a, real b) { return choose(greater(b, a), a, b); }
+HAIRLUT_INLINE real larger(real a, real b) { return choose(greater(a, b), a, b); }
 
-static inline whole iload(const int *p) { return vld1q_s32(p); }
-static inline void istore(int *p, whole a) { vst1q_s32(p, a); }
-static inline whole iall(int a) { return vdupq_n_s32(a); }
-static inline whole iadd(whole a, whole b) { return vaddq_s32(a, b); }
-static inline whole isub(whole a, whole b) { return vsubq_s32(a, b); }
-static inline whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
-static inline whole imul(whole a, whole b) { return vmulq_s32(a, b); }
-static inline whole iproduct(whole a, whole b) { return vmulq_s32(a, b); }
-static inline mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
-static inline whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }
-static inline whole truncated(real a) { return vcvtq_s32_f32(a); }
-static inline real shifted(real a) { return vreinterpretq_f32_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 2)); }
-static inline whole as_whole(real a) { return vreinterpretq_s32_f32(a); }
-static inline real converted(whole a) { return vcvtq_f32_s32(a); }
+HAIRLUT_INLINE whole iload(const int *p) { return vld1q_s32(p); }
+HAIRLUT_INLINE void istore(int *p, whole a) { vst1q_s32(p, a); }
+HAIRLUT_INLINE whole iall(int a) { return vdupq_n_s32(a); }
+HAIRLUT_INLINE whole iadd(whole a, whole b) { return vaddq_s32(a, b); }
+HAIRLUT_INLINE whole isub(whole a, whole b) { return vsubq_s32(a, b); }
+HAIRLUT_INLINE whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
+HAIRLUT_INLINE whole imul(whole a, whole b) { return vmulq_s32(a, b); }
+HAIRLUT_INLINE whole iproduct(whole a, whole b) { return vmulq_s32(a, b); }
+HAIRLUT_INLINE mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
+HAIRLUT_INLINE whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }
+HAIRLUT_INLINE whole truncated(real a) { return vcvtq_s32_f32(a); }
+HAIRLUT_INLINE real shifted(real a) { return vreinterpretq_f32_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 2)); }
+HAIRLUT_INLINE whole as_whole(real a) { return vreinterpretq_s32_f32(a); }
+HAIRLUT_INLINE real converted(whole a) { return vcvtq_f32_s32(a); }
 /* clang-format on */
 
-static inline void gather4(const float *p, const int *at, real x[4])
+HAIRLUT_INLINE void gather4(const float *p, const int *at, real x[4])
 {
     const float32x4x2_t a = vtrnq_f32(load(p + at[0]), load(p + at[1]));
     const float32x4x2_t b = vtrnq_f32(load(p + at[2]), load(p + at[3]));
@@ -68,12 +68,12 @@ static inline void gather4(const float *p, const int *at, real x[4])
     x[3] = vcombine_f32(vget_high_f32(a.val[1]), vget_high_f32(b.val[1]));
 }
 
-static inline float32x2_t one_link(const hairlut_link *links, int at)
+HAIRLUT_INLINE float32x2_t one_link(const hairlut_link *links, int at)
 {
     return vreinterpret_f32_u32(vld1_u32(&links[at].offset)); /* and h, which follows */
 }
 
-static inline void gather_links(const hairlut_link *links, const int *at, whole *offset, real *h)
+HAIRLUT_INLINE void gather_links(const hairlut_link *links, const int *at, whole *offset, real *h)
 {
     const float32x4_t a = vcombine_f32(one_link(links, at[0]), one_link(links, at[1]));
     const float32x4_t b = vcombine_f32(one_link(links, at[2]), one_link(links, at[3]));

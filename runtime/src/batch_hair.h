@@ -9,6 +9,7 @@
 
 #include "batch_lobe.h"
 #include "batch_mixture.h"
+#include "batch_sort.h"
 
 /* A block's inputs. Parameters, shares and offset may be NULL. */
 typedef struct hair_inputs {
@@ -86,14 +87,9 @@ static inline void list_density(const hairlut_model *model, int k, strand_block 
         pdf[list[s]] = density[s];
 }
 
-/* The lobes' ranges of sorted samples: lobe k's are first[k] .. first[k+1]-1. */
-typedef struct ranges {
-    size_t first[HAIRLUT_MAX_LOBES + 1];
-} ranges;
-
 /* Adds weight * density over the lobes, but for the lobe that a sample drew; `own` is NULL where none drew any. */
 static inline void add_densities(const hairlut_model *model, strand_block *strands, const directions *d,
-                                 const mixture_block *m, size_t n, const ranges *own, float *sum)
+                                 const mixture_block *m, size_t n, const sorting *own, float *sum)
 {
     float pdf[ROOM];
     for (int k = 0; k < model->lobe_count; ++k) {
@@ -105,11 +101,11 @@ static inline void add_densities(const hairlut_model *model, strand_block *stran
         } else {
             if (from > 0)
                 range_density(model, k, strands, d, m, 0, from, pdf);
+            for (size_t s = from; s < to; s += LANES)
+                store(pdf + s, all(0.0f));
             if (to < n)
                 range_density(model, k, strands, d, m, to, n - to, pdf);
         }
-        for (size_t s = from; s < to; ++s)
-            pdf[s] = 0.0f;
         for (size_t s = 0; s < n; s += LANES)
             store(sum + s, add(load(sum + s), mul(weight_at(model, m, k, s), load(pdf + s))));
     }
@@ -166,61 +162,36 @@ static inline void pdf_hair_block(const hairlut_model *model, size_t n, const ha
         store(out + s, choose(greater(load(m.valid + s), all(0.0f)), load(sum + s), all(0.0f)));
 }
 
-/* order[s] is the place of the sample that comes s-th where samples are sorted by the lobes that they draw. */
-static inline void sort_by_lobe(int lobe_count, size_t n, const int *chosen, ranges *own, int *order)
-{
-    size_t count = 0;
-    for (int k = 0; k < lobe_count; ++k) {
-        own->first[k] = count;
-        for (size_t s = 0; s < n; ++s) { /* no branch: the lobe is as good as random */
-            order[count] = (int)s;
-            count += chosen[s] == k;
-        }
-    }
-    own->first[lobe_count] = count;
-}
-
-/* to[s] = from[order[s]]; a vector beyond the end is 0. */
-static inline void reorder(float *to, const float *from, const int *order, size_t n)
-{
-    HAIRLUT_UNROLLED
-    for (size_t s = 0; s < n; ++s)
-        to[s] = from[order[s]];
-    store(to + n, all(0.0f));
-}
-
-static inline void reorder_in_place(float *values, const int *order, size_t n)
-{
-    float kept[BLOCK];
-    for (size_t s = 0; s < n; s += LANES)
-        store(kept + s, load(values + s));
-    reorder(values, kept, order, n);
-}
-
-static inline void restore_order(float *to, const float *from, const int *order, size_t n)
-{
-    HAIRLUT_UNROLLED
-    for (size_t s = 0; s < n; ++s)
-        to[order[s]] = from[s];
-}
-
 /* What samples draw from. */
 typedef struct numbers_drawn {
     float theta[ROOM], phi[ROOM];
 } numbers_drawn;
 
 /* The parameters of samples */
-static inline void reorder_strands(const hairlut_model *model, size_t n, given_strands given, const int *order,
-                                   strand_block *block)
+static inline void sort_strands(const hairlut_model *model, const sorting *sorted, size_t n, given_strands given,
+                                strand_block *block)
 {
     begin_strands(model->strands, n, block);
     for (int p = 0; p < model->strands->parameter_count; ++p)
-        reorder(block->values[p], given.values + (size_t)p * given.stride, order, n);
+        sort_array(sorted, model->lobe_count, n, given.values + (size_t)p * given.stride, block->values[p]);
 }
 
-/* The mixtures of a block, and its inputs, in the order of the lobes drawn. What is valid stays in the order of the inputs. */
+static inline void sort_mixtures(const hairlut_model *model, const sorting *sorted, size_t n, mixture_block *m)
+{
+    for (int k = 0; k < model->lobe_count; ++k) {
+        if (!m->constant)
+            sort_in_place(sorted, model->lobe_count, n, m->weight[k]);
+        if (model->mixture.turned)
+            sort_in_place(sorted, model->lobe_count, n, m->turn[k]);
+    }
+    if (model->mixture.mirrored)
+        sort_in_place(sorted, model->lobe_count, n, m->side);
+}
+
+/* The mixtures of a block, and its inputs, in the order of the lobes drawn. What is valid, and the lobes, stay in the order of the
+ * inputs. */
 static inline void prepare(const hairlut_model *model, size_t n, const hair_inputs *in, strand_block *strands,
-                           mixture_block *m, directions *d, numbers_drawn *u, ranges *own, int *order)
+                           mixture_block *m, directions *d, numbers_drawn *u, sorting *own)
 {
     float r[BLOCK];
     real share[HAIRLUT_MAX_LOBES];
@@ -238,21 +209,13 @@ static inline void prepare(const hairlut_model *model, size_t n, const hair_inpu
         store(r + s, wrap(phi_r, -hairlut_pi));
     }
     sum_up(model, n, m);
-    sort_by_lobe(model->lobe_count, n, m->chosen, own, order);
-    reorder(d->theta_r, in->theta_r, order, n);
-    reorder(d->r, r, order, n);
-    reorder(u->theta, in->u_theta, order, n);
-    reorder(u->phi, in->u_phi, order, n);
+    sort_by_lobe(model->lobe_count, n, m->chosen, own);
+    const float *const from[4] = {in->theta_r, r, in->u_theta, in->u_phi};
+    float *const to[4] = {d->theta_r, d->r, u->theta, u->phi};
+    sort_arrays(own, model->lobe_count, n, 4, from, to);
+    sort_mixtures(model, own, n, m);
     if (strands)
-        reorder_strands(model, n, in->strands, order, strands);
-    for (int k = 0; k < model->lobe_count; ++k) {
-        if (!m->constant)
-            reorder_in_place(m->weight[k], order, n);
-        if (model->mixture.turned)
-            reorder_in_place(m->turn[k], order, n);
-    }
-    if (model->mixture.mirrored)
-        reorder_in_place(m->side, order, n);
+        sort_strands(model, own, n, in->strands, strands);
 }
 
 /* What lobe k draws for its range of the sorted samples, and weight * density. Beyond its end, up to a whole vector, the next lobe writes again. */
@@ -276,14 +239,21 @@ static inline void draw_range(const hairlut_model *model, int k, strand_block *s
     }
 }
 
-/* 0 for the densities that cannot be given. */
-static inline void clear_invalid(const float *valid, size_t n, hairlut_samples out)
+/* Samples in the order of the inputs: what was sorted are theta_i, phi_i, densities and cosines of theta_i. */
+static inline void put_samples(const hairlut_model *model, size_t n, const mixture_block *m, const sorting *own,
+                               const float *const sorted[4], hairlut_samples out)
 {
-    for (size_t s = 0; s < n; ++s) {
-        if (out.pdf_angle && valid[s] == 0.0f)
-            out.pdf_angle[s] = 0.0f;
-        if (out.pdf_solid_angle && valid[s] == 0.0f)
-            out.pdf_solid_angle[s] = 0.0f;
+    for (size_t v = 0; v < n / LANES; ++v) {
+        const size_t s = v * LANES;
+        real sample[4];
+        unsorted(own, model->lobe_count, m->chosen, v, 4, sorted, sample);
+        const real density = choose(greater(load(m->valid + s), all(0.0f)), sample[2], all(0.0f));
+        store(out.theta_i + s, sample[0]);
+        store(out.phi_i + s, sample[1]);
+        if (out.pdf_angle)
+            store(out.pdf_angle + s, density);
+        if (out.pdf_solid_angle)
+            store(out.pdf_solid_angle + s, over(density, sample[3]));
     }
 }
 
@@ -294,27 +264,20 @@ static inline void sample_hair_block(const hairlut_model *model, size_t n, const
     directions d;
     numbers_drawn u;
     mixture_block m;
-    ranges own;
-    int order[ROOM];
-    float cosines[ROOM], pdf[ROOM], solid[BLOCK];
-    prepare(model, n, in, strands, &m, &d, &u, &own, order);
-    for (size_t s = 0; s < n; s += LANES)
-        store(pdf + s, all(0.0f)); /* so that compilers see that all of it is set */
+    sorting own;
+    float cosines[ROOM], pdf[ROOM];
+    const float *const sorted[4] = {d.theta_i, d.i, pdf, cosines};
+    prepare(model, n, in, strands, &m, &d, &u, &own);
+    for (size_t s = 0; s <= n; s += LANES) { /* what is read, at least by lanes that are not used, is set */
+        store(pdf + s, all(0.0f));
+        store(cosines + s, all(1.0f));
+    }
     for (int k = 0; k < model->lobe_count; ++k)
-        if (own.first[k] < own.first[k + 1])
+        if (draws_any(&own, k))
             draw_range(model, k, strands, &m, &u, own.first[k], own.first[k + 1], &d, pdf, cosines);
     end_directions(&d, &m, n);
     add_densities(model, strands, &d, &m, n, &own, pdf);
-    for (size_t s = 0; s < n; s += LANES)
-        store(solid + s, over(load(pdf + s), load(cosines + s)));
-    restore_order(out.theta_i, d.theta_i, order, n);
-    restore_order(out.phi_i, d.i, order, n);
-    if (out.pdf_angle)
-        restore_order(out.pdf_angle, pdf, order, n);
-    if (out.pdf_solid_angle)
-        restore_order(out.pdf_solid_angle, solid, order, n);
-    if (!m.all_valid)
-        clear_invalid(m.valid, n, out);
+    put_samples(model, n, &m, &own, sorted, out);
 }
 
 #endif

@@ -11,6 +11,9 @@
  *   every(m)        whether all lanes are true
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   as_whole(a)     the integers of the same bits
+ *   lanes_of(m)     the lanes that are true, bit l for lane l
+ *   permuted(a, p)  a with its lanes in the order p: to_the_front(lanes) brings those to the front, without changing their order;
+ *                   after from_the_front(lanes) lane l of them has what stood as far from the front as there are before it
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k], at[l] a multiple of 4
  *   gather_links(links, at, offset, h)  those of links[at[l]] in lane l

@@ -41,6 +41,7 @@ HAIRLUT_INLINE whole isub(whole a, whole b) { return _mm256_sub_epi32(a, b); }
 HAIRLUT_INLINE whole ismaller(whole a, whole b) { return _mm256_min_epi32(a, b); }
 HAIRLUT_INLINE whole imul(whole a, whole b) { return _mm256_madd_epi16(a, b); }
 HAIRLUT_INLINE whole iproduct(whole a, whole b) { return _mm256_mullo_epi32(a, b); }
+HAIRLUT_INLINE mask iequal(whole a, whole b) { return _mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)); }
 HAIRLUT_INLINE mask igreater(whole a, whole b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(a, b)); }
 HAIRLUT_INLINE whole iwhere(mask m, whole a) { return _mm256_and_si256(_mm256_castps_si256(m), a); }
 HAIRLUT_INLINE whole truncated(real a) { return _mm256_cvttps_epi32(a); }
@@ -78,6 +79,40 @@ HAIRLUT_INLINE void gather_links(const hairlut_link *links, const int *at, whole
     *offset = _mm256_castps_si256(_mm256_shuffle_ps(a, b, _MM_SHUFFLE(2, 0, 2, 0)));
     *h = _mm256_shuffle_ps(a, b, _MM_SHUFFLE(3, 1, 3, 1));
 }
+
+/* Permutations of eight lanes, four bits a lane, for each set of lanes, bit l of m for lane l. To the front: from the last lane on,
+ * each one of the set moves those behind it up. From the front: each moves those behind it on by one. */
+#define HAIRLUT_BIT(m, l) ((unsigned)(m) >> (l) & 1u)
+#define HAIRLUT_PUSH(m, l, rest) ((rest) * (1 + 15 * HAIRLUT_BIT(m, l)) + (l) * HAIRLUT_BIT(m, l))
+#define HAIRLUT_PUSH_TWO(m, l, rest) HAIRLUT_PUSH(m, l, HAIRLUT_PUSH(m, (l) + 1, rest))
+#define HAIRLUT_PUSH_FOUR(m, l, rest) HAIRLUT_PUSH_TWO(m, l, HAIRLUT_PUSH_TWO(m, (l) + 2, rest))
+#define HAIRLUT_TO_FRONT(m) HAIRLUT_PUSH_FOUR(m, 0, HAIRLUT_PUSH_FOUR(m, 4, 0u))
+#define HAIRLUT_BEHIND(m, l) (HAIRLUT_BIT(m, l) * (0x11111110u << 4 * (l)))
+#define HAIRLUT_BEHIND_FOUR(m, l) \
+    (HAIRLUT_BEHIND(m, l) + HAIRLUT_BEHIND(m, (l) + 1) + HAIRLUT_BEHIND(m, (l) + 2) + HAIRLUT_BEHIND(m, (l) + 3))
+#define HAIRLUT_FROM_FRONT(m) (HAIRLUT_BEHIND_FOUR(m, 0) + HAIRLUT_BEHIND_FOUR(m, 4))
+#define HAIRLUT_SETS_4(f, m) f(m), f(m + 1), f(m + 2), f(m + 3)
+#define HAIRLUT_SETS_16(f, m) \
+    HAIRLUT_SETS_4(f, m), HAIRLUT_SETS_4(f, m + 4), HAIRLUT_SETS_4(f, m + 8), HAIRLUT_SETS_4(f, m + 12)
+#define HAIRLUT_SETS_64(f, m) \
+    HAIRLUT_SETS_16(f, m), HAIRLUT_SETS_16(f, m + 16), HAIRLUT_SETS_16(f, m + 32), HAIRLUT_SETS_16(f, m + 48)
+#define HAIRLUT_SETS(f) HAIRLUT_SETS_64(f, 0), HAIRLUT_SETS_64(f, 64), HAIRLUT_SETS_64(f, 128), HAIRLUT_SETS_64(f, 192)
+static const unsigned hairlut_to_front[256] = {HAIRLUT_SETS(HAIRLUT_TO_FRONT)},
+                      hairlut_from_front[256] = {HAIRLUT_SETS(HAIRLUT_FROM_FRONT)};
+
+typedef __m256i permutation;
+
+HAIRLUT_INLINE permutation unpacked(unsigned lanes)
+{
+    return _mm256_srlv_epi32(_mm256_set1_epi32((int)lanes), _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28));
+}
+
+/* clang-format off */
+HAIRLUT_INLINE int lanes_of(mask m) { return _mm256_movemask_ps(m); }
+HAIRLUT_INLINE permutation to_the_front(int lanes) { return unpacked(hairlut_to_front[lanes]); }
+HAIRLUT_INLINE permutation from_the_front(int lanes) { return unpacked(hairlut_from_front[lanes]); }
+HAIRLUT_INLINE real permuted(real a, permutation p) { return _mm256_permutevar8x32_ps(a, p); }
+/* clang-format on */
 
 /* -1 in the lanes of the eight blended texels that are at most x */
 HAIRLUT_INLINE whole at_most(real from, real change, real t, real x)

@@ -50,6 +50,7 @@ HAIRLUT_INLINE whole isub(whole a, whole b) { return vsubq_s32(a, b); }
 HAIRLUT_INLINE whole ismaller(whole a, whole b) { return vminq_s32(a, b); }
 HAIRLUT_INLINE whole imul(whole a, whole b) { return vmulq_s32(a, b); }
 HAIRLUT_INLINE whole iproduct(whole a, whole b) { return vmulq_s32(a, b); }
+HAIRLUT_INLINE mask iequal(whole a, whole b) { return vceqq_s32(a, b); }
 HAIRLUT_INLINE mask igreater(whole a, whole b) { return vcgtq_s32(a, b); }
 HAIRLUT_INLINE whole iwhere(mask m, whole a) { return vandq_s32(vreinterpretq_s32_u32(m), a); }
 HAIRLUT_INLINE whole truncated(real a) { return vcvtq_s32_f32(a); }
@@ -80,6 +81,37 @@ HAIRLUT_INLINE void gather_links(const hairlut_link *links, const int *at, whole
     const float32x4x2_t both_parts = vuzpq_f32(a, b);
     *offset = vreinterpretq_s32_f32(both_parts.val[0]);
     *h = both_parts.val[1];
+}
+
+/* The bytes of lanes a, b, c and d, in this order. Of a set of lanes, bit l for lane l, to the front and from there. */
+#define HAIRLUT_BYTES(l) 4 * l, 4 * l + 1, 4 * l + 2, 4 * l + 3
+#define HAIRLUT_FOUR(a, b, c, d) {HAIRLUT_BYTES(a), HAIRLUT_BYTES(b), HAIRLUT_BYTES(c), HAIRLUT_BYTES(d)}
+static const uint8_t hairlut_to_front[16][16] = {
+    HAIRLUT_FOUR(0, 0, 0, 0), HAIRLUT_FOUR(0, 0, 0, 0), HAIRLUT_FOUR(1, 0, 0, 0), HAIRLUT_FOUR(0, 1, 0, 0),
+    HAIRLUT_FOUR(2, 0, 0, 0), HAIRLUT_FOUR(0, 2, 0, 0), HAIRLUT_FOUR(1, 2, 0, 0), HAIRLUT_FOUR(0, 1, 2, 0),
+    HAIRLUT_FOUR(3, 0, 0, 0), HAIRLUT_FOUR(0, 3, 0, 0), HAIRLUT_FOUR(1, 3, 0, 0), HAIRLUT_FOUR(0, 1, 3, 0),
+    HAIRLUT_FOUR(2, 3, 0, 0), HAIRLUT_FOUR(0, 2, 3, 0), HAIRLUT_FOUR(1, 2, 3, 0), HAIRLUT_FOUR(0, 1, 2, 3)};
+static const uint8_t hairlut_from_front[16][16] = {
+    HAIRLUT_FOUR(0, 0, 0, 0), HAIRLUT_FOUR(0, 1, 1, 1), HAIRLUT_FOUR(0, 0, 1, 1), HAIRLUT_FOUR(0, 1, 2, 2),
+    HAIRLUT_FOUR(0, 0, 0, 1), HAIRLUT_FOUR(0, 1, 1, 2), HAIRLUT_FOUR(0, 0, 1, 2), HAIRLUT_FOUR(0, 1, 2, 3),
+    HAIRLUT_FOUR(0, 0, 0, 0), HAIRLUT_FOUR(0, 1, 1, 1), HAIRLUT_FOUR(0, 0, 1, 1), HAIRLUT_FOUR(0, 1, 2, 2),
+    HAIRLUT_FOUR(0, 0, 0, 1), HAIRLUT_FOUR(0, 1, 1, 2), HAIRLUT_FOUR(0, 0, 1, 2), HAIRLUT_FOUR(0, 1, 2, 3)};
+
+typedef uint8x16_t permutation;
+
+HAIRLUT_INLINE int lanes_of(mask m)
+{
+    static const uint32_t bits[4] = {1, 2, 4, 8};
+    return (int)vaddvq_u32(vandq_u32(m, vld1q_u32(bits)));
+}
+
+/* clang-format off */
+HAIRLUT_INLINE permutation to_the_front(int lanes) { return vld1q_u8(hairlut_to_front[lanes]); }
+HAIRLUT_INLINE permutation from_the_front(int lanes) { return vld1q_u8(hairlut_from_front[lanes]); }
+/* clang-format on */
+HAIRLUT_INLINE real permuted(real a, permutation p)
+{
+    return vreinterpretq_f32_u8(vqtbl1q_u8(vreinterpretq_u8_f32(a), p));
 }
 
 #endif

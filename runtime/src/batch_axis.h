@@ -78,21 +78,27 @@ HAIRLUT_INLINE void place(const hairlut_axis *axis, size_t n, const float *theta
     }
 }
 
-/* How many texels of a group are at most x, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0 */
+/* How many texels of a group are at most x, of n samples in groups of `size`, which is to be a constant; `groups` are those of row 0.
+ * alike: whether all rows are the same; then the row above is not read. */
 HAIRLUT_INLINE void count(const hairlut_axis *axis, const float *groups, size_t n, const axis_searches *q, int size,
-                          int *counts)
+                          int alike, int *counts)
 {
     const float *above = groups + (size == HAIRLUT_SMALL_GROUP ? HAIRLUT_SMALL_GROUP : axis->stride);
 #ifdef HAIRLUT_COUNTS
     for (size_t s = 0; s < n; s += LANES)
-        istore(counts + s, HAIRLUT_COUNTS(groups, above, q->at + s, q->t + s, q->x + s, size));
+        istore(counts + s, HAIRLUT_COUNTS(groups, above, q->at + s, q->t + s, q->x + s, size, alike));
 #else
     HAIRLUT_UNROLLED
-    for (size_t k = 0; k < n; ++k)
-        counts[k] = (int)(size == HAIRLUT_SMALL_GROUP
-                              ? hairlut_count_eight(groups + q->at[k], hairlut_quad_all(q->t[k]), hairlut_quad_all(q->x[k]))
-                              : hairlut_axis_count_large(groups + q->at[k], above + q->at[k], hairlut_quad_all(q->t[k]),
-                                                         hairlut_quad_all(q->x[k])));
+    for (size_t k = 0; k < n; ++k) {
+        const hairlut_quad t = hairlut_quad_all(q->t[k]), x = hairlut_quad_all(q->x[k]);
+        const float *group = groups + q->at[k];
+        if (size == HAIRLUT_GROUP)
+            counts[k] = (int)hairlut_axis_count_large(group, above + q->at[k], t, x);
+        else if (alike)
+            counts[k] = (int)hairlut_quad_count_two(hairlut_quad_load(group), hairlut_quad_load(group + 4), x);
+        else
+            counts[k] = (int)hairlut_count_eight(group, t, x);
+    }
 #endif
 }
 
@@ -132,13 +138,13 @@ HAIRLUT_INLINE void find_cells(const hairlut_axis *axis, size_t n, axis_searches
 }
 
 /* Searches the cells of all, in groups of `size`. */
-HAIRLUT_INLINE void search(const hairlut_axis *axis, size_t n, axis_searches *q, int size)
+HAIRLUT_INLINE void search(const hairlut_axis *axis, size_t n, axis_searches *q, int size, int alike)
 {
     int counts[BLOCK];
-    count(axis, axis->rows, n, q, size, q->cell);
+    count(axis, axis->rows, n, q, size, alike, q->cell);
     enter_blocks(axis, n, q, size);
     halve_blocks(axis, n, q);
-    count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);
+    count(axis, axis->rows + HAIRLUT_LINE, n, q, size, alike, counts);
     find_cells(axis, n, q, counts);
 }
 
@@ -151,10 +157,12 @@ HAIRLUT_INLINE cells blend_rows(const real p[HAIRLUT_CELL], const real q[HAIRLUT
     return cell;
 }
 
-HAIRLUT_INLINE cells load_cells(const hairlut_axis *axis, const int *at, real t)
+HAIRLUT_INLINE cells load_cells(const hairlut_axis *axis, const int *at, real t, int alike)
 {
     real p[HAIRLUT_CELL], q[HAIRLUT_CELL];
     gather4(axis->ends[0], at, p);
+    if (alike)
+        return blend_rows(p, p, t);
     gather4(axis->ends[0] + HAIRLUT_CELL, at, q);
     return blend_rows(p, q, t);
 }
@@ -175,7 +183,7 @@ HAIRLUT_INLINE void store_samples(const hairlut_axis *axis, axis_samples *q, siz
 HAIRLUT_INLINE void fetch_samples(const hairlut_axis *axis, size_t n, axis_samples *q)
 {
     for (size_t s = 0; s < n; s += LANES)
-        store_samples(axis, q, s, load_cells(axis, q->at + s, load(q->t + s)));
+        store_samples(axis, q, s, load_cells(axis, q->at + s, load(q->t + s), 0));
 }
 
 /* The cells of directions s .. s+LANES-1 */
@@ -189,10 +197,10 @@ HAIRLUT_INLINE void store_searches(axis_searches *q, size_t s, cells cell)
     store(q->d1 + s, magnitude(cell.d1));
 }
 
-HAIRLUT_INLINE void fetch_searches(const hairlut_axis *axis, size_t n, axis_searches *q)
+HAIRLUT_INLINE void fetch_searches(const hairlut_axis *axis, size_t n, axis_searches *q, int alike)
 {
     for (size_t s = 0; s < n; s += LANES)
-        store_searches(q, s, load_cells(axis, q->at + s, load(q->t + s)));
+        store_searches(q, s, load_cells(axis, q->at + s, load(q->t + s), alike));
 }
 
 /* hairlut_draw_two, of an axis, of samples s .. s+LANES-1 that were placed and fetched */
@@ -223,11 +231,17 @@ HAIRLUT_INLINE mask begin_search(const hairlut_axis *axis, real theta_r, real x,
 /* The rest of the search, and the cells. */
 HAIRLUT_INLINE void end_search(const hairlut_axis *axis, size_t n, axis_searches *q)
 {
-    if (HAIRLUT_IS_SMALL(axis->columns))
-        search(axis, n, q, HAIRLUT_SMALL_GROUP);
+    const int small = HAIRLUT_IS_SMALL(axis->columns);
+    if (small && axis->alike) {
+        search(axis, n, q, HAIRLUT_SMALL_GROUP, 1);
+        fetch_searches(axis, n, q, 1);
+        return;
+    }
+    if (small)
+        search(axis, n, q, HAIRLUT_SMALL_GROUP, 0);
     else
-        search(axis, n, q, HAIRLUT_GROUP);
-    fetch_searches(axis, n, q);
+        search(axis, n, q, HAIRLUT_GROUP, 0);
+    fetch_searches(axis, n, q, 0);
 }
 
 /* hairlut_invert_four, of an axis: bend and root of directions s .. s+LANES-1 */

@@ -17,7 +17,7 @@
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k], at[l] a multiple of 4
  *   gather_links(links, at, offset, h)  those of links[at[l]] in lane l
- *   HAIRLUT_COUNTS(groups, above, at, t, x, n)  may be defined: lane l has the count of groups and above + at[l], t[l], x[l]
+ *   HAIRLUT_COUNTS(groups, above, at, t, x, n, alike)  may be defined: lane l has the count of groups and above + at[l], t[l], x[l]
  *
  * Every formula repeats the scalar one operation by operation, without fused multiply-add: that makes the results equal bit
  * for bit. The work on a block is done in passes, each short enough that a processor has several vectors of it under way: a

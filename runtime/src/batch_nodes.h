@@ -11,26 +11,27 @@ enum { COUNTED_NODES = 64 }; /* up to so many are counted for whole vectors, mor
 /* hairlut_nodes_place */
 static inline real find_node(const hairlut_nodes *nodes, real x, real *t)
 {
-    float at[LANES], place[LANES];
-    real j = all(0.0f);
+    float at[LANES];
+    int place[LANES];
+    whole j = iall(0);
+    real node[4];
     *t = all(0.0f);
     if (nodes->count == 1)
-        return j;
+        return *t;
     if (nodes->count <= COUNTED_NODES) {
-        for (int k = 0; k + 2 < nodes->count; ++k)
-            j = add(j, choose(at_least(x, all(nodes->inner[k])), all(1.0f), all(0.0f)));
+        HAIRLUT_UNROLLED
+        for (int k = 0; k < nodes->count - 2; ++k)
+            j = iadd(j, iwhere(at_least(x, all(nodes->inner[k])), iall(1)));
     } else {
         store(at, x);
         for (int l = 0; l < LANES; ++l)
-            place[l] = (float)hairlut_nodes_place(nodes, at[l]).j;
-        j = load(place);
+            place[l] = hairlut_nodes_place(nodes, at[l]).j;
+        j = iload(place);
     }
-    int offset[LANES];
-    real node[4];
-    istore(offset, truncated(add(j, j)));
-    gather4(nodes->pairs, offset, node);
+    istore(place, iadd(j, j));
+    gather4(nodes->pairs, place, node);
     *t = clamp(mul(sub(x, node[0]), node[1]), all(0.0f), all(1.0f));
-    return j;
+    return converted(j);
 }
 
 #endif

@@ -81,6 +81,21 @@ HAIRLUT_INLINE void load_weights(const strand_table *table, size_t s, real weigh
     weigh_corners(t, axes, weight);
 }
 
+/* Lane l of x[k] is the blend of what stands k floats behind at[l], which is in the first corner's arrays. */
+HAIRLUT_INLINE void gather_blends(const hairlut_spacing *spacing, const real *weight, const float *p, const int *at,
+                                  real x[4], int axes)
+{
+    gather4(p, at, x);
+    for (int k = 0; k < 4; ++k)
+        x[k] = mul(weight[0], x[k]);
+    for (int c = 1; c < 1 << axes; ++c) {
+        real y[4];
+        gather4(p + spacing->corner[c], at, y);
+        for (int k = 0; k < 4; ++k)
+            x[k] = add(x[k], mul(weight[c], y[k]));
+    }
+}
+
 /* The same, to be read one strand after the other */
 typedef struct corner_weights {
     float of[HAIRLUT_CORNERS][LANES];
@@ -105,22 +120,25 @@ HAIRLUT_INLINE hairlut_oct blend_texels(const hairlut_spacing *spacing, const co
     return sum;
 }
 
-/* How many texels of a group of `size` are at most x */
+/* How many texels of a group of `size` are at most x. Where rows are alike, none is blended with the row above. */
 HAIRLUT_INLINE int count_strand(const hairlut_spacing *spacing, const corner_weights *weights, int l, const float *group,
-                                const float *above, float t, float x, int size, int axes)
+                                const float *above, float t, float x, int size, int alike, int axes)
 {
     unsigned counted = 0;
     for (int k = 0; k < size; k += 8) {
-        const hairlut_oct from = blend_texels(spacing, weights, l, group + k, axes);
-        const hairlut_oct to = blend_texels(spacing, weights, l, above + k, axes);
-        const hairlut_oct change = size == HAIRLUT_SMALL_GROUP ? to : hairlut_oct_sub(to, from);
-        counted += hairlut_oct_count(hairlut_oct_add(from, hairlut_oct_mul(hairlut_oct_all(t), change)), hairlut_oct_all(x));
+        hairlut_oct texels = blend_texels(spacing, weights, l, group + k, axes);
+        if (!alike) {
+            const hairlut_oct to = blend_texels(spacing, weights, l, above + k, axes);
+            const hairlut_oct change = size == HAIRLUT_SMALL_GROUP ? to : hairlut_oct_sub(to, texels);
+            texels = hairlut_oct_add(texels, hairlut_oct_mul(hairlut_oct_all(t), change));
+        }
+        counted += hairlut_oct_count(texels, hairlut_oct_all(x));
     }
     return (int)counted;
 }
 
 HAIRLUT_INLINE void count_strands(const hairlut_axis *axis, const strand_table *table, const float *groups, size_t n,
-                                  const axis_searches *q, int size, int *counts, int axes)
+                                  const axis_searches *q, int size, int alike, int *counts, int axes)
 {
     const float *above = groups + (size == HAIRLUT_SMALL_GROUP ? HAIRLUT_SMALL_GROUP : axis->stride);
     for (size_t s = 0; s < n; s += LANES) {
@@ -129,8 +147,8 @@ HAIRLUT_INLINE void count_strands(const hairlut_axis *axis, const strand_table *
         HAIRLUT_UNROLLED
         for (int l = 0; l < LANES; ++l) {
             const size_t k = s + (size_t)l;
-            counts[k] =
-                count_strand(table->spacing, &weights, l, groups + q->at[k], above + q->at[k], q->t[k], q->x[k], size, axes);
+            counts[k] = count_strand(table->spacing, &weights, l, groups + q->at[k], above + q->at[k], q->t[k], q->x[k],
+                                     size, alike, axes);
         }
     }
 }
@@ -170,14 +188,14 @@ static inline void halve_strands(const hairlut_axis *axis, const strand_table *t
 
 /* Searches the cells of all, in groups of `size`. */
 HAIRLUT_INLINE void search_strands(const hairlut_axis *axis, const strand_table *table, size_t n, axis_searches *q, int size,
-                                   int axes)
+                                   int alike, int axes)
 {
     int counts[BLOCK];
     enter_corners(table, n, q->at);
-    count_strands(axis, table, axis->rows, n, q, size, q->cell, axes);
+    count_strands(axis, table, axis->rows, n, q, size, alike, q->cell, axes);
     enter_blocks(axis, n, q, size);
     halve_strands(axis, table, n, q, axes);
-    count_strands(axis, table, axis->rows + HAIRLUT_LINE, n, q, size, counts, axes);
+    count_strands(axis, table, axis->rows + HAIRLUT_LINE, n, q, size, alike, counts, axes);
     find_cells(axis, n, q, counts);
     enter_corners(table, n, q->at);
 }
@@ -186,59 +204,58 @@ HAIRLUT_INLINE void search_strands(const hairlut_axis *axis, const strand_table 
 
 /* hairlut_strand_cell of strands s .. s+LANES-1 */
 HAIRLUT_INLINE cells blend_cells(const hairlut_axis *axis, const strand_table *table, size_t s, const int *at, real t,
-                                 int axes)
+                                 int alike, int axes)
 {
     real weight[HAIRLUT_CORNERS], below[HAIRLUT_CELL], above[HAIRLUT_CELL];
     load_weights(table, s, weight, axes);
-    for (int c = 0; c < 1 << axes; ++c) {
-        const float *p = axis->ends[0] + table->spacing->corner[c];
-        real low[HAIRLUT_CELL], high[HAIRLUT_CELL];
-        gather4(p, at, low);
-        gather4(p + HAIRLUT_CELL, at, high);
-        for (int k = 0; k < HAIRLUT_CELL; ++k) {
-            below[k] = c == 0 ? mul(weight[c], low[k]) : add(below[k], mul(weight[c], low[k]));
-            above[k] = c == 0 ? mul(weight[c], high[k]) : add(above[k], mul(weight[c], high[k]));
-        }
-    }
+    gather_blends(table->spacing, weight, axis->ends[0], at, below, axes);
+    if (alike)
+        return blend_rows(below, below, t);
+    gather_blends(table->spacing, weight, axis->ends[0] + HAIRLUT_CELL, at, above, axes);
     return blend_rows(below, above, t);
 }
 
 HAIRLUT_INLINE void find_strand_cells(const hairlut_axis *axis, const strand_table *table, size_t n, axis_searches *q,
-                                      int axes)
+                                      int alike, int axes)
 {
     if (HAIRLUT_IS_SMALL(axis->columns))
-        search_strands(axis, table, n, q, HAIRLUT_SMALL_GROUP, axes);
+        search_strands(axis, table, n, q, HAIRLUT_SMALL_GROUP, alike, axes);
     else
-        search_strands(axis, table, n, q, HAIRLUT_GROUP, axes);
+        search_strands(axis, table, n, q, HAIRLUT_GROUP, 0, axes);
     for (size_t s = 0; s < n; s += LANES)
-        store_searches(q, s, blend_cells(axis, table, s, q->at + s, load(q->t + s), axes));
+        store_searches(q, s, blend_cells(axis, table, s, q->at + s, load(q->t + s), alike, axes));
 }
 
 HAIRLUT_INLINE void fetch_strand_samples(const hairlut_axis *axis, const strand_table *table, size_t n, axis_samples *q,
-                                         int axes)
+                                         int alike, int axes)
 {
     enter_corners(table, n, q->at);
     for (size_t s = 0; s < n; s += LANES)
-        store_samples(axis, q, s, blend_cells(axis, table, s, q->at + s, load(q->t + s), axes));
+        store_samples(axis, q, s, blend_cells(axis, table, s, q->at + s, load(q->t + s), alike, axes));
 }
 
 /* ---- with parameters or without ------------------------------------------------------------------------------- */
 
-/* Most tables have one axis: it gets code of its own. Apart from the code without parameters, which is inlined where it is used. */
+/* Most tables have one axis: it gets code of its own, and so do rows that are all alike. Apart from the code without parameters,
+ * which is inlined where it is used. */
 HAIRLUT_APART static void end_strand_search(const hairlut_axis *axis, const strand_table *table, size_t n, axis_searches *q)
 {
-    if (table->axes == 1)
-        find_strand_cells(axis, table, n, q, 1);
+    if (table->axes == 1 && axis->alike)
+        find_strand_cells(axis, table, n, q, 1, 1);
+    else if (table->axes == 1)
+        find_strand_cells(axis, table, n, q, 0, 1);
     else
-        find_strand_cells(axis, table, n, q, table->axes);
+        find_strand_cells(axis, table, n, q, 0, table->axes);
 }
 
 HAIRLUT_APART static void fetch_strands(const hairlut_axis *axis, const strand_table *table, size_t n, axis_samples *q)
 {
-    if (table->axes == 1)
-        fetch_strand_samples(axis, table, n, q, 1);
+    if (table->axes == 1 && axis->alike)
+        fetch_strand_samples(axis, table, n, q, 1, 1);
+    else if (table->axes == 1)
+        fetch_strand_samples(axis, table, n, q, 0, 1);
     else
-        fetch_strand_samples(axis, table, n, q, table->axes);
+        fetch_strand_samples(axis, table, n, q, 0, table->axes);
 }
 
 HAIRLUT_INLINE void end_search_at(const hairlut_axis *axis, const strand_table *table, size_t n, axis_searches *q)

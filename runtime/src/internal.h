@@ -117,6 +117,7 @@ typedef struct hairlut_axis {
     int stride; /* floats from one row to the next */
     int step;   /* cells of a block */
     int grid;   /* the same number in all axes of a model whose rows are of the same theta_r */
+    int alike;  /* whether all rows of a node are the same, as where an azimuth does not depend on theta_r; 0: not known */
 } hairlut_axis;
 
 /* The bits of a float shifted right by two are those of F / 2^96, F as in warp.h. */

@@ -228,11 +228,14 @@ static float *build_table(table_list *list, int k, const hairlut_strands *strand
     const size_t floats = hairlut_table_floats(table), count = tables_of(table);
     const size_t texels = 2 * (size_t)table->width * (size_t)table->height;
     hairlut_table node = *table;
+    int alike = 1;
     for (size_t p = 0; p + 1 < count; ++p) {
         node.texels = table->texels + p * texels;
         hairlut_build_axis(&list->axes[k], &node, memory + (p + 1) * floats);
+        alike &= list->axes[k].alike;
     }
     hairlut_build_axis(&list->axes[k], table, memory);
+    list->axes[k].alike &= alike;
     if (count > 1) {
         const hairlut_corners corners = hairlut_standard_corners(strands, list->nodes[k].grid);
         hairlut_blend_axis(&list->axes[k], memory, &list->nodes[k], &corners);

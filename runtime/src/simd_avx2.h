@@ -120,9 +120,12 @@ HAIRLUT_INLINE whole at_most(real from, real change, real t, real x)
     return _mm256_castps_si256(_mm256_cmp_ps(add(from, mul(t, change)), x, _CMP_LE_OQ));
 }
 
-HAIRLUT_INLINE whole tally(const float *group, const float *above, float t, float x, int n)
+HAIRLUT_INLINE whole tally(const float *group, const float *above, float t, float x, int n, int alike)
 {
-    const real from = load(group), to = load(above);
+    const real from = load(group);
+    if (alike)
+        return _mm256_castps_si256(_mm256_cmp_ps(from, all(x), _CMP_LE_OQ));
+    const real to = load(above);
     if (n == HAIRLUT_SMALL_GROUP)
         return at_most(from, to, all(t), all(x));
     const real from8 = load(group + 8), to8 = load(above + 8);
@@ -130,19 +133,21 @@ HAIRLUT_INLINE whole tally(const float *group, const float *above, float t, floa
 }
 
 /* The tallies of samples 0 and 1, as 16-bit integers: those of sample 0 are in the first half of both halves of a vector. */
-HAIRLUT_INLINE whole pair(const float *groups, const float *above, const int *at, const float *t, const float *x, int n)
+HAIRLUT_INLINE whole pair(const float *groups, const float *above, const int *at, const float *t, const float *x, int n,
+                          int alike)
 {
-    return _mm256_packs_epi32(tally(groups + at[0], above + at[0], t[0], x[0], n),
-                              tally(groups + at[1], above + at[1], t[1], x[1], n));
+    return _mm256_packs_epi32(tally(groups + at[0], above + at[0], t[0], x[0], n, alike),
+                              tally(groups + at[1], above + at[1], t[1], x[1], n, alike));
 }
 
 /* Eight tallies become bytes, four for each sample in both halves of a vector, whose sum is turned positive. */
 #define HAIRLUT_COUNTS counts_at_most
 HAIRLUT_INLINE whole counts_at_most(const float *groups, const float *above, const int *at, const float *t, const float *x,
-                                    int n)
+                                    int n, int alike)
 {
-    const whole p0 = pair(groups, above, at, t, x, n), p2 = pair(groups, above, at + 2, t + 2, x + 2, n);
-    const whole p4 = pair(groups, above, at + 4, t + 4, x + 4, n), p6 = pair(groups, above, at + 6, t + 6, x + 6, n);
+    const whole p0 = pair(groups, above, at, t, x, n, alike), p2 = pair(groups, above, at + 2, t + 2, x + 2, n, alike);
+    const whole p4 = pair(groups, above, at + 4, t + 4, x + 4, n, alike),
+                p6 = pair(groups, above, at + 6, t + 6, x + 6, n, alike);
     const whole a = _mm256_packs_epi16(p0, p2), b = _mm256_packs_epi16(p4, p6);
     const whole bytes = _mm256_add_epi8(_mm256_permute2x128_si256(a, b, 0x20), _mm256_permute2x128_si256(a, b, 0x31));
     return _mm256_madd_epi16(_mm256_maddubs_epi16(_mm256_set1_epi8(1), bytes), _mm256_set1_epi16(-1));

@@ -200,6 +200,15 @@ size_t hairlut_table_floats(const hairlut_table *t)
     return rows_floats(t) + cells_floats(t) + knots_floats(t) + links_floats(t);
 }
 
+static int rows_are_alike(const hairlut_table *t)
+{
+    const size_t row = (size_t)t->width * TEXEL;
+    int alike = 1;
+    for (int j = 1; j < t->height; ++j)
+        alike &= memcmp(t->texels, t->texels + (size_t)j * row, row * sizeof *t->texels) == 0;
+    return alike;
+}
+
 /* The fields of an axis that are numbers. */
 static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *scale)
 {
@@ -223,6 +232,7 @@ static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *s
     axis.stride = HAIRLUT_STRIDE(t->width);
     axis.step = HAIRLUT_STEP(t->width);
     axis.grid = 0;
+    axis.alike = rows_are_alike(t);
     return axis;
 }
 

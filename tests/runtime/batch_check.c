@@ -115,6 +115,14 @@ static float *make_texels(int width, int height, float low, float high)
     return texels;
 }
 
+/* All rows of each node as its first */
+static void make_rows_alike(float *texels, int width, int height, int nodes)
+{
+    const size_t row = 2 * (size_t)width;
+    for (int j = 0; j < nodes * height; ++j)
+        memcpy(texels + (size_t)j * row, texels + (size_t)(j - j % height) * row, row * sizeof *texels);
+}
+
 static float *make_floats(size_t n, float low, float high, float zero)
 {
     float *values = malloc(n * sizeof *values);
@@ -146,7 +154,8 @@ typedef struct shape {
 
 enum { NODES = 3 /* of an axis */ };
 
-/* Tables and mixture depend on `axes` of the parameters: a lobe's azimuth on one less, every fifth table on none. */
+/* Tables and mixture depend on `axes` of the parameters: a lobe's azimuth on one less, every fifth table on none. Every other
+ * lobe's azimuth does not depend on theta_r. */
 static hairlut_model *make_model(const shape *s, hairlut_warp warp, int axes)
 {
     static const float values[NODES] = {0.0f, 0.4f, 1.0f};
@@ -164,12 +173,11 @@ static hairlut_model *make_model(const shape *s, hairlut_warp warp, int axes)
     for (int k = 0; k < 2 * s->lobes; ++k) {
         const float low = k % 2 ? 0.0f : -half_pi, high = k % 2 ? two_pi : half_pi;
         const int own = k % 5 == 4 || axes == 0 ? 0 : axes - k % 2;
-        const hairlut_table table = {sizeof table, make_texels(s->width, s->height * powers[own], low, high),
-                                     s->width,     s->height,
-                                     -half_pi,     half_pi,
-                                     low,          high,
-                                     warp,         1.0f / 262144.0f,
-                                     own,          nodes_of};
+        float *texels = make_texels(s->width, s->height * powers[own], low, high);
+        if (k % 4 == 3)
+            make_rows_alike(texels, s->width, s->height, powers[own]);
+        const hairlut_table table = {sizeof table, texels, s->width, s->height,        -half_pi, half_pi,
+                                     low,          high,   warp,     1.0f / 262144.0f, own,      nodes_of};
         tables[k] = table;
     }
     for (int k = 0; k < s->lobes; ++k) {

@@ -15,6 +15,7 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
+from scipy.stats import qmc
 
 import hairlut
 from hairlut.exr import write_model
@@ -26,7 +27,7 @@ from report.places import PAGES
 
 VIEWERS = np.radians(-90 + 30.0 * (np.arange(6) + 0.5) + 2.1)  # even over the hemisphere, between rows
 OFFSETS = (np.arange(5) + 0.41) / 5
-POINTS = 432, 384
+DRAWS = 1 << 18  # of a sampler whose density is not known, by viewer
 BRIGHT = 1e-4
 TOLERANCE, BUDGET = 0.01, 1e4  # seconds: whatever else runs, all hairs start from full effort
 DATA = PAGES / "fit.json"
@@ -60,21 +61,23 @@ def measured(subject: Subject) -> dict:
         row["own"] = quadrature(subject, subject.own)
     if subject.parts:
         row["parts"] = at_random_offsets(subject)
+    if subject.draws:
+        row["draws"] = of_draws(subject)
     return row
 
 
 def quadrature(subject: Subject, pdf) -> dict:
     """V at each viewer, the mean over offsets, the largest weight, and the variance of one draw's estimate
     in lamps, at a random offset, by midpoints."""
-    theta_i, phi, size = directions()
+    theta_i, phi, size = directions(subject.points)
     lamps = light(theta_i, phi)
     offsets = OFFSETS if subject.offsets else np.zeros(1)
     variance, weight, in_lamps = [], 0.0, []
     for theta_r in VIEWERS:
         here, first, second = [], 0.0, 0.0
         for offset in offsets:
-            p = np.broadcast_to(subject.density(theta_r, theta_i, phi, offset), POINTS)
-            q = np.broadcast_to(np.asarray(pdf(theta_r, theta_i, phi, offset), float), POINTS)
+            p = np.broadcast_to(subject.density(theta_r, theta_i, phi, offset), subject.points)
+            q = np.broadcast_to(np.asarray(pdf(theta_r, theta_i, phi, offset), float), subject.points)
             total = p.sum() * size
             square = p * (p / np.maximum(q, 1e-300))
             here.append(square.sum() * size / total**2 - 1)
@@ -91,7 +94,7 @@ def quadrature(subject: Subject, pdf) -> dict:
 def at_random_offsets(subject: Subject) -> dict:
     """V, and the variance in lamps, of one draw by the authors' sampler at a random one of the offsets that a
     hair is the mean of: a pixel that is wider than the fibre."""
-    theta_i, phi, size = directions()
+    theta_i, phi, size = directions(subject.points)
     found: dict[str, list[float]] = {"variance": [], "lamps": []}
     for theta_r in VIEWERS:
         for name, radiance in (("variance", 1.0), ("lamps", light(theta_i, phi))):
@@ -104,9 +107,20 @@ def at_random_offsets(subject: Subject) -> dict:
     return found
 
 
-def directions():
+def of_draws(subject: Subject) -> dict:
+    """V, and the variance in lamps, of one draw by a sampler that returns a weight, from many draws."""
+    found: dict[str, list[float]] = {"variance": [], "lamps": []}
+    u = qmc.Sobol(8, seed=7).random(DRAWS)
+    for theta_r in VIEWERS:
+        theta_i, phi, weight = subject.draws(theta_r, u)
+        for name, value in (("variance", weight), ("lamps", weight * light(theta_i, phi))):
+            found[name].append(float((value**2).mean() / value.mean() ** 2 - 1))
+    return found
+
+
+def directions(points: tuple[int, int]):
     """(theta_i (n, 1), phi (m,), the rad^2 of each) by midpoints."""
-    n, m = POINTS
+    n, m = points
     theta_i = ((np.arange(n) + 0.5) / n - 0.5)[:, None] * np.pi
     return theta_i, (np.arange(m) + 0.5) / m * 2 * np.pi, np.pi / n * 2 * np.pi / m
 

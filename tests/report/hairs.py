@@ -2,9 +2,9 @@
 """Hairs from papers and a few made up: densities of light per rad^2, and the authors' own sampler where
 there is one.
 
-Near field: Chiang et al. 2016, as precompute/examples/chiang2016.py has it. Far field: Karis 2016; Chiang's
-hair averaged over the offset; a dual-scattering mix whose multiple scattering steps from forward to backward
-at 90 degrees; and two separable highlights."""
+Near field: Chiang et al. 2016, as precompute/examples/chiang2016.py has it. Far field: Huang et al. 2022, as
+precompute/examples/huang2022.py has it; Karis 2016; Chiang's hair averaged over the offset; a dual-scattering
+mix whose multiple scattering steps from forward to backward at 90 degrees; and two separable highlights."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from report.places import ROOT
 
-EXAMPLE = ROOT / "precompute" / "examples" / "chiang2016.py"
+EXAMPLES = ROOT / "precompute" / "examples"
 BETA_M, BETA_N = (0.05, 0.1, 0.3, 0.6), (0.1, 0.3, 0.6)
 ABSORPTIONS = 0.1, 0.6, 3.0  # times the fibre's radius: blond, brown, black
 AVERAGED = 24  # offsets on each side of the fibre
@@ -24,13 +24,30 @@ AVERAGED = 24  # offsets on each side of the fibre
 @dataclass(frozen=True)
 class Subject:
     """density(theta_r, theta_i, phi, offset) per rad^2; own: that of the authors' sampler, or None. parts: of
-    a hair that is an average over offsets, (density, own) at each of those, for the same arguments."""
+    a hair that is an average over offsets, (density, own) at each of those, for the same arguments. draws: of
+    authors whose sampler knows no density, (theta_i, phi, weight) for theta_r and u (n, 8); points: of the
+    quadrature that measures it, if its density is slow."""
 
     name: str
     density: Callable
     offsets: bool
     own: Callable | None = None
     parts: Callable | None = None
+    draws: Callable | None = None
+    points: tuple[int, int] = 432, 384
+
+
+def example(name: str, settings: dict[str, str]) -> dict:
+    """The names that an example defines, with lines of it changed to those of settings."""
+    path = EXAMPLES / name
+    text = path.read_text()
+    for old, new in settings.items():
+        if text.count(old) != 1:
+            raise RuntimeError(f"{path}: expected one line {old}")
+        text = text.replace(old, new)
+    space: dict = {"__name__": path.stem}
+    exec(compile(text, str(path), "exec"), space)
+    return space
 
 
 class Chiang:
@@ -38,17 +55,13 @@ class Chiang:
     of its angles exactly."""
 
     def __init__(self, beta_m: float, beta_n: float, absorption: float):
-        text = EXAMPLE.read_text()
-        for old, new in (
-            ("BETA_M, BETA_N = 0.3, 0.3", f"BETA_M, BETA_N = {beta_m}, {beta_n}"),
-            ("ABSORPTION = 0.6", f"ABSORPTION = {absorption}"),
-        ):
-            if text.count(old) != 1:
-                raise RuntimeError(f"{EXAMPLE}: expected one line {old}")
-            text = text.replace(old, new)
-        space: dict = {}
-        exec(compile(text, str(EXAMPLE), "exec"), space)
-        self._space = space
+        self._space = example(
+            "chiang2016.py",
+            {
+                "BETA_M, BETA_N = 0.3, 0.3": f"BETA_M, BETA_N = {beta_m}, {beta_n}",
+                "ABSORPTION = 0.6": f"ABSORPTION = {absorption}",
+            },
+        )
 
     def density(self, theta_r, theta_i, phi, offset):
         return self._space["bsdf"](theta_r, theta_i, phi, offset) * np.cos(theta_i) ** 2
@@ -82,6 +95,59 @@ class Chiang:
         return theta_i, np.mod(phi, 2 * np.pi)
 
 
+class Huang:
+    """The example, with another roughness, and the sampler of the paper: a path through the fibre of drawn
+    facets, then R, TT or TRT by what each keeps of the light. It returns a weight and knows no density."""
+
+    def __init__(self, roughness: float, absorption: float, paths: int = 512):
+        self._space = example(
+            "huang2022.py",
+            {
+                "ROUGHNESS = 0.3": f"ROUGHNESS = {roughness}",
+                "ABSORPTION = 0.3": f"ABSORPTION = {absorption}",
+                "PATHS, REFLECTIONS = 512": f"PATHS, REFLECTIONS = {paths}",
+            },
+        )
+
+    def density(self, theta_r, theta_i, phi, offset):
+        return self._space["bsdf"](theta_r, theta_i, phi) * np.cos(theta_i) ** 2
+
+    def draws(self, theta_r, u):
+        """(theta_i, phi, weight) for u (n, 8): the lobe's, the place on the fibre's, and two for each of
+        three facets."""
+        space = self._space
+        first = space["first_hits"](theta_r, u[:, 1])
+        second = space["enter"](first, u[:, 2:4])
+        third = space["reflect_inside"](second, u[:, 4:6])
+        ends = self._reflected(first, u[:, 2:4]), self._left(second, u[:, 4:6]), self._left(third, u[:, 6:8])
+        light = np.stack([weight for _, weight in ends])
+        below = np.cumsum(light, axis=0) / np.maximum(light.sum(axis=0), 1e-300)
+        lobe = np.minimum((u[:, 0] > below).sum(axis=0), 2)
+        out = np.take_along_axis(np.stack([out for out, _ in ends]), lobe[None, :, None], axis=0)[0]
+        theta_i, phi = np.arcsin(np.clip(out[:, 2], -1, 1)), np.arctan2(out[:, 1], out[:, 0])
+        return theta_i, phi % (2 * np.pi), light.sum(axis=0)
+
+    def _reflected(self, hits, u):
+        space = self._space
+        dot, scales = space["dot"], space["tilted"](hits.normal)
+        facet = space["visible_facet"](hits.back, scales, u)
+        cosine = dot(hits.back, facet)
+        out = 2 * cosine[:, None] * facet - hits.back
+        passes = (dot(out, scales) > 0) & (dot(out, hits.normal) > 0)
+        masked = space["shadowed"](dot(scales, hits.back), dot(scales, out))
+        return out, hits.weight * space["fresnel"](cosine, space["ETA"])[0] * masked * passes
+
+    def _left(self, hits, u):
+        space = self._space
+        dot, scales = space["dot"], -space["tilted"](hits.normal)
+        facet = space["visible_facet"](hits.back, scales, u)
+        reflectance = space["fresnel"](dot(hits.back, facet), 1 / space["ETA"])[0]
+        out = space["refract"](hits.back, facet, 1 / space["ETA"])
+        passes = (dot(hits.back, scales) > 0) & (dot(out, scales) < 0) & (dot(out, hits.normal) > 0)
+        masked = space["shadowed"](dot(scales, hits.back), -dot(scales, out))
+        return out, hits.weight * (1 - reflectance) * masked * passes
+
+
 def near_field() -> list[Subject]:
     """Chiang's hair at 4 x 3 roughnesses and three absorptions."""
     found = []
@@ -97,6 +163,7 @@ def far_field() -> list[Subject]:
     """Hairs without offsets."""
     subjects = [Subject(f"karis {rough}", karis(rough), False) for rough in (0.3, 0.5)]
     subjects += [averaged(m, n, 0.6) for m, n in ((0.3, 0.3), (0.1, 0.3))]
+    subjects += [huang(roughness, absorption) for roughness, absorption in ((0.3, 0.3), (0.3, 1.5))]
     return [
         *subjects,
         Subject("dual scattering", dual_scattering, False),
@@ -139,6 +206,13 @@ def karis(rough: float) -> Callable:
         return (r + tt + trt) * np.cos(theta_i) ** 2
 
     return density
+
+
+def huang(roughness: float, absorption: float) -> Subject:
+    """Huang's hair, seen from afar."""
+    hair = Huang(roughness, absorption)
+    name = f"huang {roughness} {absorption}"
+    return Subject(name, hair.density, False, draws=hair.draws, points=(144, 128))
 
 
 def averaged(beta_m: float, beta_n: float, absorption: float) -> Subject:

@@ -6,7 +6,7 @@ import pytest
 from scipy import stats
 
 from report import fits, fits_page, weights
-from report.hairs import Chiang, Subject, far_field, near_field
+from report.hairs import Chiang, Huang, Subject, far_field, near_field
 
 DRAWS = 40_000
 ALPHA = 1e-3
@@ -46,6 +46,29 @@ def p_value(hair, place, sample):
         if merged[-1] > 1
         else stats.chisquare(found[:-1], merged[:-1] * found[:-1].sum() / merged[:-1].sum()).pvalue
     )
+
+
+@pytest.mark.parametrize("theta_r", [0.3, -1.1])
+def test_huangs_sampler_scatters_its_light(theta_r):
+    """Sums of weights in cells against sums over the light, with the variances of the sums."""
+    assert p_of_weights(Huang(0.3, 0.3, 1024), theta_r, Huang(0.3, 0.3)) > ALPHA
+
+
+def test_huangs_sampler_of_another_roughness_would_fail():
+    assert p_of_weights(Huang(0.3, 0.3, 1024), 0.3, Huang(0.33, 0.3)) < ALPHA
+
+
+def p_of_weights(hair, theta_r, sampler):
+    cells, fine = 6, 6
+    theta_i, phi, weight = sampler.draws(theta_r, np.random.default_rng(1).random((DRAWS, 8)))
+    edges = np.linspace(-np.pi / 2, np.pi / 2, cells + 1), np.linspace(0, 2 * np.pi, cells + 1)
+    first, second = (np.histogram2d(theta_i, phi, edges, weights=weight**k)[0] / DRAWS for k in (1, 2))
+    t, p, size = fits.directions((cells * fine, cells * fine))
+    light = hair.density(theta_r, t, p, 0.0) * size
+    expected = light.reshape(cells, fine, cells, fine).sum(axis=(1, 3))
+    lit = expected > 1e-3 * expected.sum()
+    distance = (first - expected) ** 2 / ((second - first**2) / DRAWS)
+    return stats.chi2.sf(distance[lit].sum(), lit.sum())
 
 
 def test_every_hair_is_a_density():
@@ -96,7 +119,7 @@ def test_a_random_offset_costs_the_spread_of_its_light():
 
     def parts(theta_r, theta_i, phi):
         for light in (1.0, 3.0):
-            p = np.broadcast_to(light * np.cos(theta_i) / (4 * np.pi), fits.POINTS)
+            p = np.broadcast_to(light * np.cos(theta_i) / (4 * np.pi), Subject.points)
             yield p, p / light
 
     found = fits.at_random_offsets(Subject("two", None, False, parts=parts))

@@ -164,6 +164,7 @@ WRONG = {
     "fit hair.py": "hair.py",
     "fit bsdf.py --tolerance 0": "--tolerance 0",
     "fit bsdf.py --budget nan": "--budget nan",
+    "fit bsdf.py --size 0": "--size 0.0: expected a number above 0",
     "fit bsdf.py --lobes 99": "--lobes 99",
     "inspect": "required",
     "inspect nothing.exr": "nothing.exr: no such file",

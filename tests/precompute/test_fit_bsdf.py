@@ -111,6 +111,19 @@ def test_a_slow_function_is_fitted_within_its_budget(tmp_path, capsys):
     assert quadrature(model, function(fitted(tmp_path, NEAR)), 0.111, 0.3)[0] < 0.05
 
 
+def test_textures_take_no_more_memory_than_they_may(tmp_path, capsys):
+    """A quarter less than they would take; and what cannot be kept is said."""
+    path = fitted(tmp_path, FAR)
+    _, free, _ = run(path, tmp_path / "free", capsys)
+    _, small, _ = run(path, tmp_path / "small", capsys, "--size", str(0.75 * free["bytes"] / 1024))
+    assert small["bytes"] <= 0.75 * free["bytes"]
+    assert small["relative_variance"] > free["relative_variance"]
+    assert small["limits"] == []
+    _, tiny, _ = run(path, tmp_path / "tiny", capsys, "--size", "1")
+    assert "size" in tiny["limits"]
+    assert not tiny["out_of_time"]
+
+
 def test_a_fit_without_enough_time_says_what_limits_it(tmp_path, capsys):
     path = fitted(tmp_path, NEAR.replace("8.0", "2000.0"))
     assert cli.main(["fit", str(path), "--out", str(tmp_path / "out"), "--budget", "0.1"]) == cli.OK

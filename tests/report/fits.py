@@ -30,6 +30,7 @@ OFFSETS = (np.arange(5) + 0.41) / 5
 DRAWS = 1 << 18  # of a sampler whose density is not known, by viewer
 BRIGHT = 1e-4
 TOLERANCE, BUDGET = 0.01, 1e4  # seconds: whatever else runs, all hairs start from full effort
+SIZE = fits_page.KILOBYTES * 1024
 DATA = PAGES / "fit.json"
 WEIGHTS = PAGES / "fit_weights.md"  # by weights.py
 
@@ -38,7 +39,7 @@ def measured(subject: Subject) -> dict:
     """What a fit costs, promises and keeps."""
     start = process_time()
     given = hair.of_density(subject.density, subject.offsets)
-    found = refine.fit(given, "hair", TOLERANCE, None, BUDGET, lambda stage, share: None)
+    found = refine.fit(given, "hair", TOLERANCE, None, BUDGET, lambda stage, share: None, SIZE)
     with tempfile.TemporaryDirectory() as folder:
         paths = write_model(Path(folder), summary.with_errors(found))
         seconds = process_time() - start

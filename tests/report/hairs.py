@@ -99,13 +99,13 @@ class Huang:
     """The example, with another roughness, and the sampler of the paper: a path through the fibre of drawn
     facets, then R, TT or TRT by what each keeps of the light. It returns a weight and knows no density."""
 
-    def __init__(self, roughness: float, absorption: float, paths: int = 512):
+    def __init__(self, roughness: float, absorption: float, paths: int = 256):
         self._space = example(
             "huang2022.py",
             {
                 "ROUGHNESS = 0.3": f"ROUGHNESS = {roughness}",
                 "ABSORPTION = 0.3": f"ABSORPTION = {absorption}",
-                "PATHS, REFLECTIONS = 512": f"PATHS, REFLECTIONS = {paths}",
+                "PATHS, REFLECTIONS = 256": f"PATHS, REFLECTIONS = {paths}",
             },
         )
 

@@ -15,6 +15,7 @@ from . import OK, add_command
 
 DEFAULT_TOLERANCE = 0.01
 DEFAULT_BUDGET, DEFAULT_BUDGET_OF_PARAMETERS = 120.0, 600.0
+DEFAULT_SIZE = 256.0  # KB
 MAX_LOBES = 8
 
 Report = Callable[[str, float], None]
@@ -89,6 +90,13 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         help="time that a fit may take, about: fewer cells where it is short (default: "
         f"{DEFAULT_BUDGET:g}, for a hair with parameters {DEFAULT_BUDGET_OF_PARAMETERS:g})",
     )
+    parser.add_argument(
+        "--size",
+        type=float,
+        metavar="KB",
+        help="memory that the textures of a BSDF or a grid without parameters may take: where they would "
+        f"take more, they lose more (default: {DEFAULT_SIZE:g})",
+    )
     parser.add_argument("--json", action="store_true", help="print the result as JSON, and nothing else")
     parser.add_argument(
         "--plot", type=Path, metavar="FILE", help="draw the fit and its errors to a PNG, SVG or PDF"
@@ -142,6 +150,7 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
 
         if args.plot:
             raise HairlutError("--plot: draws have no density to plot: leave it out")
+        _no_size(args, "draws")
         report("cross-validating", 0.0)
         found = drawn.fit(data, name, args.lobes)
         text, figures = summary.drawn_text(args.data, data, found), summary.drawn_data(data, found)
@@ -155,7 +164,8 @@ def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: R
     from ..fit import refine, summary, warnings
 
     with _named(args.data):
-        found = refine.fit(given, name, args.tolerance, args.lobes, args.budget or DEFAULT_BUDGET, report)
+        budget, size = args.budget or DEFAULT_BUDGET, 1024 * (args.size or DEFAULT_SIZE)
+        found = refine.fit(given, name, args.tolerance, args.lobes, budget, report, size)
     if args.plot:
         _plot(args.plot, lambda kind: _plotted(given, found, name, kind))
     figures = {"data": str(what), **summary.data(found, args.tolerance)}
@@ -170,6 +180,7 @@ def _of_parameters(
     from ..fit.strands import box, summary
     from ..fit.strands import fit as fitting
 
+    _no_size(args, "a hair with parameters")
     budget = args.budget or DEFAULT_BUDGET_OF_PARAMETERS
     with _named(args.data):
         given = box.of_parameters(density, parameters, offsets)
@@ -182,6 +193,11 @@ def _of_parameters(
     at = found.measured
     losses = promise.Losses(at.theta_r, at.offset, at.variance, at.weight, at.light)
     return summary.with_errors(found), text, figures, warnings.warnings(given.hair, losses)
+
+
+def _no_size(args: argparse.Namespace, what: str) -> None:
+    if args.size is not None:
+        raise HairlutError(f"--size: the textures of {what} take what they need: leave it out")
 
 
 @contextmanager
@@ -222,7 +238,7 @@ def _checked(args: argparse.Namespace) -> str:
     name = args.data.stem if args.name is None else args.name
     if not name or Path(name).name != name or name.startswith((".", "-")):
         raise HairlutError(f"--name {name}: expected the name of a directory")
-    for option in ("tolerance", "budget"):
+    for option in ("tolerance", "budget", "size"):
         value = getattr(args, option)
         if value is not None and not (math.isfinite(value) and value > 0):
             raise HairlutError(f"--{option} {value}: expected a number above 0")

@@ -11,11 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 
 import numpy as np
 
 from ..errors import HairlutError
+from ..exr import write_model
 from ..lobes import Array
 from ..mixture import Mixture, wrap
 from ..model import BakedLobe, BakedModel
@@ -41,6 +44,8 @@ FARTHEST = 0.5  # rad by which a turn is expected to go on from row to row
 GRAZING, UNSEEN = 0.1, 0.1
 """Below this cosine of theta_r a fibre is hardly seen: tables may lose more, up to this part's inverse."""
 TABLE_PART = 0.15  # of the tolerance that each table may lose
+EASES = 1.0, 1.5, 2.0, 3.0, 5.0  # times as much, where the textures would be too large
+PROMISE = 256  # bytes that a promise takes in a header, at most
 SHARE_OF_AXIS = 0.2  # of the tolerance above which an axis is refined
 WEIGHT_PARTS = 5.0  # what a weight that is too large counts, or a viewer whose V is
 LARGEST_STEP = 2.0
@@ -65,8 +70,8 @@ class Fitted:
     """A baked model; reach: V that so many lobes have on the cells they were fitted to, the mean over
     theta_r and the worst; loss: V and largest weight by where they were measured ("nodes", "theta_r",
     "offset": between those); promised: losses at random viewers, in `repeats` independent groups of as
-    many; untried_lobes: whether more lobes were not tried, and out_of_time, whether they or finer cells were
-    not, for want of time."""
+    many; too_large: whether the textures take more memory than they may; untried_lobes: whether more lobes
+    were not tried, and out_of_time, whether they or finer cells were not, for want of time."""
 
     model: BakedModel
     axes: Axes
@@ -75,6 +80,7 @@ class Fitted:
     loss: dict[str, tuple[float, float]]
     promised: promise.Losses
     repeats: int = 1
+    too_large: bool = False
     untried_lobes: bool = False
     out_of_time: bool = False
 
@@ -82,8 +88,17 @@ class Fitted:
 Report = Callable[[str, float], None]
 
 
-def fit(hair: Hair, name: str, tolerance: float, lobes: int | None, budget: float, report: Report) -> Fitted:
-    """The model of a hair. lobes: how many, or None to choose; budget: seconds that it may take, about."""
+def fit(
+    hair: Hair,
+    name: str,
+    tolerance: float,
+    lobes: int | None,
+    budget: float,
+    report: Report,
+    size: float = np.inf,
+) -> Fitted:
+    """The model of a hair. lobes: how many, or None to choose; budget: seconds that it may take, about; size:
+    bytes that its textures may take, for which tables lose more where they must."""
     start = perf_counter()
     random = np.random.default_rng(0)
     best: Fitted | None = None
@@ -102,7 +117,7 @@ def fit(hair: Hair, name: str, tolerance: float, lobes: int | None, budget: floa
     turning = hair.offsets and _turns(hair, axes, effort, count)
     while True:
         began = perf_counter()
-        found = _fit_once(hair, name, axes, effort, count, turning, tolerance, random, so_far)
+        found = _fit_once(hair, name, axes, effort, count, turning, tolerance, size, random, so_far)
         seconds = perf_counter() - began
         better = best is None or _score(found, tolerance) < _score(best, tolerance)
         if not limits(found, tolerance):
@@ -110,8 +125,9 @@ def fit(hair: Hair, name: str, tolerance: float, lobes: int | None, budget: floa
         best = found if better else best
         finer = _finer(found, hair, tolerance)
         growth = np.prod([getattr(finer, axis) / getattr(axes, axis) for axis in LIMITS])
-        if finer == axes or growth * seconds > left():
-            best = replace(best, untried_lobes=untried, out_of_time=untried or finer != axes)
+        if finer == axes or found.too_large or growth * seconds > left():
+            late = untried or (finer != axes and not found.too_large)
+            best = replace(best, untried_lobes=untried, out_of_time=late)
             return best if best.repeats > 1 else _measured(best, hair, effort, random, so_far)
         axes = finer
 
@@ -129,15 +145,16 @@ def _first(hair: Hair, budget: float) -> tuple[Axes, Effort]:
 
 
 def limits(found: Fitted, tolerance: float) -> list[str]:
-    """What keeps a fit from the tolerance: the names of axes, "lobes", or nothing."""
+    """What keeps a fit from the tolerance: the names of axes, "size", "lobes", or nothing."""
     viewers = found.promised.variance.mean(axis=1)
     means = [viewers.mean(), *(variance for variance, _ in found.loss.values())]
     weights = [found.promised.weight.max(), *(weight for _, weight in found.loss.values())]
     near = max(means) <= found.reach + tolerance and viewers.max() <= found.worst_reach + 2 * tolerance
+    size = ["size"] if found.too_large else []
     lobes = ["lobes"] if found.untried_lobes else []
     if near and max(weights) <= HEAVIEST:
-        return lobes
-    return [*_standing_out(found, tolerance), *lobes] or ["lobes"]
+        return [*size, *lobes]
+    return [*_standing_out(found, tolerance), *size, *lobes] or ["lobes"]
 
 
 def _measured(
@@ -157,11 +174,11 @@ def _measured(
     return replace(found, promised=promise.Losses(*parts), repeats=effort.repeats)
 
 
-def _score(found: Fitted, tolerance: float) -> float:
+def _score(found: Fitted, tolerance: float) -> tuple[bool, float]:
+    """What is lower for a better fit."""
     viewers = found.promised.variance.mean(axis=1)
-    return (
-        viewers.mean() + viewers.max() / 4 + tolerance * max(0.0, found.promised.weight.max() / HEAVIEST - 1)
-    )
+    too_heavy = max(0.0, found.promised.weight.max() / HEAVIEST - 1)
+    return found.too_large, float(viewers.mean() + viewers.max() / 4 + tolerance * too_heavy)
 
 
 def _lobes(
@@ -219,6 +236,7 @@ def _fit_once(
     count: int,
     turning: bool,
     tolerance: float,
+    size: float,
     random: np.random.Generator,
     report: Report,
 ) -> Fitted:
@@ -227,14 +245,18 @@ def _fit_once(
     data = _cells(hair, hair.rows(axes.theta_r), angle, axes, effort)
     rows = fit_rows(data, angle, count, turning, lambda share: report("fitting lobes", share))
     reach = np.array([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)])
-    model = bake(data, rows, name, hair.mirrored, TABLE_PART * tolerance)
+    for ease in EASES:
+        model = bake(data, rows, name, hair.mirrored, TABLE_PART * tolerance, ease)
+        if stored(model) <= size:
+            break
     report("measuring", 0.0)
     loss = _losses(hair, model, axes, effort, random)
     theta_r, offset = _random_places(hair, effort, random)
     promised = promise.losses(model, hair.density, theta_r, offset, effort.around * axes.phi, random)
     if not np.isfinite(promised.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
-    return Fitted(model, axes, float(reach.mean()), float(reach.max()), loss, promised)
+    too_large = stored(model) > size
+    return Fitted(model, axes, float(reach.mean()), float(reach.max()), loss, promised, too_large=too_large)
 
 
 def fit_rows(
@@ -281,8 +303,10 @@ def _at_all(row: Row, mass: Array, some: Array, angle: Array, turning: bool) -> 
     return same_shapes(replace(row, share=share, turn=turn), mass, angle, turning)
 
 
-def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -> BakedModel:
-    """The textures of the rows, each table losing at most `loss` of V."""
+def bake(
+    data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float, ease: float = 1.0
+) -> BakedModel:
+    """The textures of the rows, each table losing at most `loss` of V, times ease."""
     lobes = []
     around = np.tile(np.linspace(0, TWO_PI, rows[0].phi.shape[1] + 1), (len(rows), 1))
     seen = np.clip(np.cos(data.theta_r) / GRAZING, UNSEEN, 1.0)
@@ -290,7 +314,7 @@ def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -
     turn = wrap(np.stack([row.turn for row in rows]).transpose(2, 0, 1))
     bright = bright_parts(data.theta_edges, rows)
     for k in range(len(share)):
-        lobe, need = f"lobe{k}", tables.Need(seen * share[k].mean(axis=1), bright[k], loss)
+        lobe, need = f"lobe{k}", tables.Need(seen * share[k].mean(axis=1), bright[k], loss).eased(ease)
         inclinations, azimuths = (
             np.stack(part) for part in zip(*((r.theta[:, k], r.phi[k]) for r in rows), strict=True)
         )
@@ -303,6 +327,12 @@ def bake(data: Cells, rows: list[Row], name: str, mirrored: bool, loss: float) -
         lobes.append(BakedLobe(lobe, tables.smallest(f"{lobe}_theta", name, theta, need), phi))
     mixture = Mixture(tuple(one.name for one in lobes), data.theta_r, data.offset, share, turn, mirrored)
     return BakedModel(name, tuple(lobes), mixture)
+
+
+def stored(model: BakedModel) -> int:
+    """Bytes of the model's files, with the promise in a header."""
+    with TemporaryDirectory() as folder:
+        return PROMISE + sum(path.stat().st_size for path in write_model(Path(folder), model))
 
 
 def bright_parts(theta_edges: Array, rows: list[Row]) -> Array:

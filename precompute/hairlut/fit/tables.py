@@ -21,8 +21,6 @@ from .turning import TWO_PI
 WIDTHS = 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256
 EXPONENTS = -5, -8, -11, -14, -17  # of the warp's e
 HEAVIEST = 4.0
-"""The largest weight that a table may cause where its lobe is bright: lobes of little light are alone at some
-azimuths, so that their importance does not forgive it."""
 CLOSE = 1.5  # times the least loss, where no table meets the need: what is as good as that
 FROM_WIDTH = 0.5  # part of the loss that the width may make; the rest is the height's
 _nodes, _weights = np.polynomial.legendre.leggauss(4)
@@ -32,11 +30,18 @@ NODES, WEIGHTS = (_nodes + 1) / 2, _weights / 2
 @dataclass(frozen=True)
 class Need:
     """What each row of a table is worth, (J,): importance, the lobe's share in the row's light; bright, the
-    part of the row's own peak above which its weights count. loss: relative variance that it may cost."""
+    part of the row's own peak above which its weights count. loss: relative variance that it may cost.
+    heaviest: the largest weight that it may cause where its lobe is bright: lobes of little light are alone
+    at some azimuths, so that their importance does not forgive it."""
 
     importance: Array
     bright: Array
     loss: float
+    heaviest: float = HEAVIEST
+
+    def eased(self, times: float) -> Need:
+        """What a smaller table can do: `times` the loss, and a heaviest weight that grows more slowly."""
+        return replace(self, loss=self.loss * times, heaviest=self.heaviest * times**0.5)
 
 
 def smallest(name: str, model: str, exact: SmoothRows, need: Need) -> Table:
@@ -79,7 +84,7 @@ def part_lost(table: Table, exact: SmoothRows, need: Need) -> float:
     light = density / np.cos(x) if table.angle == "theta_i" else density
     bright = light > need.bright[:, None, None] * light.max(axis=(1, 2), keepdims=True)
     heaviest = np.where(bright, weight, 0.0).max()
-    return float(max((variance * need.importance).max() / need.loss, heaviest / HEAVIEST))
+    return float(max((variance * need.importance).max() / need.loss, heaviest / need.heaviest))
 
 
 def table_of(name: str, model: str, exact: SmoothRows, width: int, warp: Warp, step: int) -> Table | None:

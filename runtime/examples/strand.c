@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Draws with each strand's own roughness, from a model over parameters: strand DIRECTORY */
+/* Draws, and asks for a density, with each strand's own roughness, from a model over parameters: strand DIRECTORY */
 #include <stdio.h>
 
 #include "hairlut.h"
@@ -16,8 +16,12 @@ int main(int argc, char **argv)
         hairlut_parameter_range(hair, p, NULL, NULL, &strand[p]); /* the standard values, but for beta_m */
     for (int k = 0; k <= 4 && hairlut_parameter_range(hair, beta_m, &least, &most, NULL); ++k) {
         strand[beta_m] = least + (most - least) * (float)k / 4.0f;
-        const hairlut_sample s = hairlut_sample_strand(hair, strand, NULL, 0.3f, 1.0f, 0.4f, 0.1f, 0.25f, 0.75f);
-        printf("beta_m %.3f: theta_i %.4f, %.4f per sr\n", strand[beta_m], s.theta_i, s.pdf_solid_angle);
+        hairlut_viewer viewer; /* what the calls at one hit have in common */
+        hairlut_viewer_at(&viewer, hair, strand, NULL, 0.3f, 1.0f, 0.4f);
+        const hairlut_sample s = hairlut_viewer_sample(&viewer, 0.1f, 0.25f, 0.75f);
+        const float light = hairlut_viewer_pdf(&viewer, -0.2f, 3.0f); /* of a direction that a light chose */
+        printf("beta_m %.3f: theta_i %.4f, %.4f per sr; another direction %.4f per rad^2\n", strand[beta_m], s.theta_i,
+               s.pdf_solid_angle, light);
     }
     hairlut_free(hair);
     return 0;

@@ -76,6 +76,7 @@ void add_model(const std::string &name, const hairlut_model &model)
         if (hairlut_lobe_index(&model, lobe) >= 0)
             lobes.push_back(lobe);
     add_all(name, bench::hair_calls(model), "one");
+    add_all(name, bench::hit_calls(model), "one");
     for (const std::string &lobe : lobes)
         add_all(name, bench::lobe_calls(model, lobe), "one");
     for (int level = 0; const hairlut_batch *kernels = hairlut_batch_level(level); ++level) {
@@ -103,7 +104,8 @@ void add_rivals()
                                                                {"pdf_multiple", one->pdf_multiple},
                                                                {"sample_hair", one->sample_hair},
                                                                {"pdf_hair", one->pdf_hair},
-                                                               {"vertex", one->vertex}};
+                                                               {"vertex", one->vertex},
+                                                               {"hit", one->hit}};
         for (const auto &[name, call] : calls)
             if (call)
                 add(std::string(one->model) + "/" + name + "/" + one->name + "/" + one->how,

@@ -97,6 +97,37 @@ void density_of_strands(const hairlut_model &model, const Strands &strands, cons
                          all.theta_light, all.phi_light, all.pdf_light);
 }
 
+constexpr size_t lights = 4; // of a hit
+
+// The sum of the densities of as many lights' directions, those of i and the next
+template <class Density> float sum_of_lights(const rival_arrays &all, size_t i, size_t count, Density density)
+{
+    float sum = 0.0f;
+    for (size_t k = 0; k < count; ++k) {
+        const size_t light = (i + k) % all.n;
+        sum += density(all.theta_light[light], all.phi_light[light]);
+    }
+    return sum;
+}
+
+// strand: its parameters, or nullptr
+void hit(const hairlut_model &model, const float *strand, const rival_arrays &all, size_t i)
+{
+    sample_strand(model, strand, all, i);
+    all.pdf_light[i] = sum_of_lights(all, i, lights, [&](float theta, float phi) {
+        return hairlut_pdf_strand(&model, strand, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i], theta, phi);
+    });
+}
+
+void hit_by_viewer(const hairlut_model &model, const float *strand, const rival_arrays &all, size_t i, size_t count)
+{
+    hairlut_viewer viewer;
+    hairlut_viewer_at(&viewer, &model, strand, nullptr, all.theta_r[i], all.phi_r[i], all.offset[i]);
+    put(all, i, hairlut_viewer_sample(&viewer, all.u_lobe[i], all.u_theta[i], all.u_phi[i]));
+    all.pdf_light[i] =
+        sum_of_lights(all, i, count, [&](float theta, float phi) { return hairlut_viewer_pdf(&viewer, theta, phi); });
+}
+
 std::string of_run(const char *call, size_t run)
 {
     return run == 1 ? call : std::string(call) + "_" + std::to_string(run);
@@ -122,6 +153,28 @@ Calls strand_calls(const hairlut_model &model, size_t run)
                      sample_strand(model, strands->of(i), all, i);
                      density_of_strand(model, strands->of(i), all, i);
                  }
+             }}};
+}
+
+Calls hit_calls(const hairlut_model &model)
+{
+    const auto strands = random_strands(model, 1);
+    const bool some = strands->parameters > 0;
+    const std::string of = some ? "_strand" : "";
+    const auto at = [strands, some](size_t i) { return some ? strands->of(i) : nullptr; };
+    return {{"hit" + of,
+             [&model, at](const rival_arrays &all) {
+                 for (size_t i = 0; i < all.n; ++i)
+                     hit(model, at(i), all, i);
+             }},
+            {"hit" + of + "_viewer",
+             [&model, at](const rival_arrays &all) {
+                 for (size_t i = 0; i < all.n; ++i)
+                     hit_by_viewer(model, at(i), all, i, lights);
+             }},
+            {"vertex" + of + "_viewer", [&model, at](const rival_arrays &all) {
+                 for (size_t i = 0; i < all.n; ++i)
+                     hit_by_viewer(model, at(i), all, i, 1);
              }}};
 }
 

@@ -32,4 +32,8 @@ Calls lobe_calls(const hairlut_model &model, const std::string &name, const hair
 Calls strand_calls(const hairlut_model &model, size_t run);
 Calls strand_array_calls(const hairlut_model &model, size_t run);
 
+// hit: a sample and the densities of four directions, as where four lights are sampled at one hit; hit_viewer and vertex_viewer: by
+// a hairlut_viewer. Of a model over parameters, with other random ones for each sample: hit_strand and so on.
+Calls hit_calls(const hairlut_model &model);
+
 } // namespace bench

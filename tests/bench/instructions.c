@@ -11,6 +11,8 @@ enum { N = 4096 };
 
 static float theta_r[N], phi_r[N], u_lobe[N], u_theta[N], u_phi[N], theta_i[N], phi_i[N], pdf[N], solid[N];
 
+static hairlut_viewer viewers[N];
+
 static float unit(void)
 {
     static unsigned state = 1;
@@ -59,6 +61,15 @@ __attribute__((noinline)) void counted(const char *what, const hairlut_model *m)
         hairlut_sample_hair_n(m, N, NULL, theta_r, phi_r, NULL, u_lobe, u_theta, u_phi, out);
     else if (strcmp(what, "pdf_hair_n") == 0)
         hairlut_pdf_hair_n(m, N, NULL, theta_r, phi_r, NULL, theta_i, phi_i, pdf);
+    else if (strcmp(what, "viewer_at") == 0)
+        for (int i = 0; i < N; ++i)
+            hairlut_viewer_at(&viewers[i], m, NULL, NULL, theta_r[i], phi_r[i], 0.4f);
+    else if (strcmp(what, "viewer_sample") == 0)
+        for (int i = 0; i < N; ++i)
+            keep(i, hairlut_viewer_sample(&viewers[i], u_lobe[i], u_theta[i], u_phi[i]));
+    else if (strcmp(what, "viewer_pdf") == 0)
+        for (int i = 0; i < N; ++i)
+            pdf[i] = hairlut_viewer_pdf(&viewers[i], theta_i[i], phi_i[i]);
     else if (strcmp(what, "nothing") != 0)
         exit(2);
 }
@@ -74,7 +85,8 @@ int main(int argc, char **argv)
         u_theta[i] = unit();
         u_phi[i] = unit();
         u_lobe[i] = unit();
-        keep(i, hairlut_sample_direct(model, theta_r[i], phi_r[i], u_theta[i], u_phi[i]));
+        keep(i, hairlut_sample_hair(model, NULL, theta_r[i], phi_r[i], 0.0f, u_lobe[i], u_theta[i], u_phi[i]));
+        hairlut_viewer_at(&viewers[i], model, NULL, NULL, theta_r[i], phi_r[i], 0.4f);
     }
     counted(argv[1], model);
     printf("%d\n", N);

@@ -14,18 +14,23 @@ from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    "sample_direct": 243,
-    "sample_multiple": 219,
-    "pdf_direct": 263,
-    "pdf_multiple": 203,
-    "sample_hair": 459,
-    "pdf_hair": 423,
-    "sample_direct_n": 52,
-    "sample_multiple_n": 33,
-    "pdf_direct_n": 84,
-    "pdf_multiple_n": 47,
-    "sample_hair_n": 175,
-    "pdf_hair_n": 134,
+    ("fitted", "sample_direct"): 243,
+    ("fitted", "sample_multiple"): 219,
+    ("fitted", "pdf_direct"): 263,
+    ("fitted", "pdf_multiple"): 203,
+    ("fitted", "sample_hair"): 468,
+    ("fitted", "pdf_hair"): 428,
+    ("fitted", "sample_direct_n"): 52,
+    ("fitted", "sample_multiple_n"): 33,
+    ("fitted", "pdf_direct_n"): 84,
+    ("fitted", "pdf_multiple_n"): 47,
+    ("fitted", "sample_hair_n"): 178,
+    ("fitted", "pdf_hair_n"): 137,
+    ("brown", "sample_hair"): 1083,
+    ("brown", "pdf_hair"): 1043,
+    ("brown", "viewer_at"): 380,
+    ("brown", "viewer_sample"): 778,
+    ("brown", "viewer_pdf"): 738,
 }
 
 
@@ -38,18 +43,18 @@ def program():
     return compiled("instructions", ROOT / "tests" / "bench" / "instructions.c", "cc", "-O2")
 
 
-def instructions(program, what: str) -> float:
-    """Instructions a sample of one function."""
+def instructions(program, model: str, what: str) -> float:
+    """Instructions a sample of one function, of a compiled-in model."""
     done = subprocess.run(
         [
             tool("valgrind"),
             "--tool=callgrind",
             "--collect-atstart=no",
             "--toggle-collect=counted",
-            f"--callgrind-out-file={program.parent}/{what}.callgrind",
+            f"--callgrind-out-file={program.parent}/{model}_{what}.callgrind",
             str(program),
             what,
-            "fitted",
+            model,
         ],
         check=True,
         text=True,
@@ -60,10 +65,10 @@ def instructions(program, what: str) -> float:
     return collected / int(done.stdout)
 
 
-@pytest.mark.parametrize("what", PINNED)
-def test_instructions_a_sample(program, what):
-    counted = instructions(program, what)
-    pinned = PINNED[what]
+@pytest.mark.parametrize(("model", "what"), PINNED)
+def test_instructions_a_sample(program, model, what):
+    counted = instructions(program, model, what)
+    pinned = PINNED[model, what]
     assert counted < (1 + TOLERANCE) * pinned, f"{what}: {counted:.1f} instructions, pinned {pinned}"
     assert counted > (1 - 2 * TOLERANCE) * pinned, (
         f"{what}: {counted:.1f} instructions: pin that instead of {pinned}"
@@ -72,4 +77,4 @@ def test_instructions_a_sample(program, what):
 
 def test_counting_counts(program):
     """A function that does nothing costs nothing: what is counted is the samples, not the program."""
-    assert instructions(program, "nothing") < 0.5
+    assert instructions(program, "fitted", "nothing") < 0.5

@@ -112,6 +112,25 @@ def test_a_vertex_is_a_sample_and_a_density():
             )  # the fastest flags may round otherwise
 
 
+def test_a_hit_is_a_sample_and_four_densities():
+    hits = listed("hit")
+    assert [rival.name for rival in hits] == ["Chiang"] * 2
+    for rival in hits:
+        u = np.random.default_rng(4).random((8, 50), np.float32)
+        viewer = {"theta_r": u[0] - 0.5, "phi_r": 6 * u[1] - 3, "offset": 1.8 * u[2] - 0.9}
+        numbers = {"u_lobe": u[3], "u_theta": u[4], "u_phi": u[5]}
+        hit = rival.run("hit", **viewer, **numbers, theta_light=u[6] - 0.5, phi_light=6 * u[7] - 3)
+        one = rival.run("sample_hair", **viewer, **numbers)
+        for name in ("theta_i", "phi_i", "pdf_angle", "pdf_solid_angle"):
+            assert_allclose(hit[name], one[name], rtol=1e-4, atol=1e-6)
+        lights = [np.roll(u[6:], -k, axis=1) for k in range(4)]
+        each = [
+            rival.run("pdf_hair", **viewer, theta_light=theta - 0.5, phi_light=6 * phi - 3)["pdf_light"]
+            for theta, phi in lights
+        ]
+        assert_allclose(hit["pdf_light"], sum(each), rtol=1e-4, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     "rival", [each for each in listed("pdf_direct") if "logistic" not in each.name], ids=label
 )

@@ -23,13 +23,15 @@ EXAMPLE = ROOT / "precompute" / "examples" / "chiang_parameters.py"
 TARGET = 1.5
 REPETITIONS = 20
 NAMES = (
-    "^(strands/(sample|pdf|vertex)_strand(_64)?|fixed/(sample_hair|pdf_hair|vertex))/hairlut/(one|arrays)$"
+    "^((strands/(sample|pdf|vertex)_strand(_64)?|fixed/(sample_hair|pdf_hair|vertex))/hairlut/(one|arrays)|"
+    "(strands/(vertex_strand|hit_strand)|(fixed|brown)/(vertex|hit))(_viewer)?/(hairlut|Chiang)/(one|native))$"
 )
 CALLS = {
     "vertex": ("vertex", "vertex_strand"),
     "sample": ("sample_hair", "sample_strand"),
     "density": ("pdf_hair", "pdf_strand"),
 }
+VIEWERS = {"strands": "_strand", "fixed": "", "brown": ""}
 HOW = {"one": "one at a time", "arrays": "over arrays"}
 
 TEXT = """# What parameters cost
@@ -46,6 +48,17 @@ in the median a repeat took {interference:.0%} longer. Inputs are those of the s
 
 Target: a vertex with parameters costs at most {target} times one without, one call at a time. With other
 parameters for each sample it is **{verdict}**.
+
+"""
+
+VIEWER_TEXT = """
+## Several calls at one hit
+
+`hairlut_viewer` computes once what the calls at a hit have in common: the place of the parameters, the
+mixture. A vertex is as above; a hit is one sample and the densities of four directions, as where four lights
+are sampled. `strands` is the model with parameters, others for each sample, `fixed` the same model at its
+standard ones, `brown` is compiled in. Chiang's own sampler and density (`bench/rivals/chiang.c`) compute the
+viewer's side once a call for a vertex, and once in all for a hit; bold where they are faster.
 
 """
 
@@ -85,7 +98,23 @@ def page(times: timing.Times) -> str:
         verdict=f"{'met' if ratio <= TARGET else 'missed'}: {ratio:.2f} times",
     )
     columns = ("call", "without", "other parameters each sample (times)", "the same for 64 samples (times)")
-    return text + table(columns, rows)
+    return text + table(columns, rows) + by_viewers(times)
+
+
+def by_viewers(times: timing.Times) -> str:
+    """What hairlut_viewer gains where a hit makes several calls."""
+    rows = []
+    for model, form in VIEWERS.items():
+        for call in ("vertex", "hit"):
+            each, viewer = (
+                times.least(model, call + form + how, "hairlut", "one") for how in ("", "_viewer")
+            )
+            theirs = times.fastest(model, call, "Chiang", "one")
+            rival = f"{theirs:.1f} ({viewer / theirs:.2f})" if theirs else ""
+            rival = f"**{rival}**" if theirs and theirs < viewer else rival
+            rows.append((f"{call}, `{model}`", f"{each:.1f}", f"{viewer:.1f} ({each / viewer:.2f})", rival))
+    theirs = "Chiang's own (times as fast as the viewer)"
+    return VIEWER_TEXT + table(("call", "each call by itself", "by a viewer (times as fast)", theirs), rows)
 
 
 def main() -> int:

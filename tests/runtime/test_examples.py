@@ -49,10 +49,11 @@ def test_strand_draws_with_each_roughness(tmp_path):
     steps = [beta_m.least + k / 4 * (beta_m.most - beta_m.least) for k in range(5)]
     assert [row[0] for row in shown] == pytest.approx(steps, abs=1e-3)
     assert len({row[1] for row in shown}) == 5
-    for _, theta_i, pdf in shown:
+    for _, theta_i, pdf, light in shown:
         sampled = 1e-4 + hair.lobes[0].theta.domain[1]
         assert abs(theta_i) < sampled
         assert pdf > 0
+        assert light > 0
 
 
 @pytest.mark.usefixtures("loader")

@@ -13,6 +13,8 @@
 
 #define PI 3.14159265f
 
+#define RIVAL_INLINE static inline __attribute__((always_inline))
+
 enum { LOBES = 4 };
 
 /* What does not depend on directions, as a renderer keeps it with the material. */
@@ -166,9 +168,8 @@ typedef struct direction {
     float theta_i, phi_i, pdf_angle, pdf_solid_angle;
 } direction;
 
-RIVAL_ONE static direction sample_hair(float theta_r, float phi_r, float h, float u_lobe, float u_theta, float u_phi)
+RIVAL_INLINE direction draw(const viewer at, float phi_r, float u_lobe, float u_theta, float u_phi)
 {
-    const viewer at = viewer_at(theta_r, h);
     /* lobe p in proportion to A_p; what is left of u_lobe is uniform within it */
     const float c1 = at.chance[0], c2 = c1 + at.chance[1], c3 = c2 + at.chance[2];
     const int p = (u_lobe >= c1) + (u_lobe >= c2) + (u_lobe >= c3);
@@ -197,11 +198,22 @@ RIVAL_ONE static direction sample_hair(float theta_r, float phi_r, float h, floa
     return drawn;
 }
 
+RIVAL_ONE static direction sample_hair(float theta_r, float phi_r, float h, float u_lobe, float u_theta, float u_phi)
+{
+    const viewer at = viewer_at(theta_r, h);
+    return draw(at, phi_r, u_lobe, u_theta, u_phi);
+}
+
+RIVAL_INLINE float density_of(const viewer *at, float phi_r, float theta_i, float phi_i)
+{
+    const float sine_i = sinf(theta_i), cosine_i = cosine_of(sine_i);
+    return cosine_i * density(at, sine_i, cosine_i, phi_i - phi_r);
+}
+
 RIVAL_ONE static float pdf_hair(float theta_r, float phi_r, float h, float theta_i, float phi_i)
 {
     const viewer at = viewer_at(theta_r, h);
-    const float sine_i = sinf(theta_i), cosine_i = cosine_of(sine_i);
-    return cosine_i * density(&at, sine_i, cosine_i, phi_i - phi_r);
+    return density_of(&at, phi_r, theta_i, phi_i);
 }
 
 static inline void put(const rival_arrays *all, size_t i, direction drawn)
@@ -241,7 +253,30 @@ static void vertex(const rival_arrays *arrays)
     }
 }
 
+#ifdef RIVAL_ARRAYS_WIDTH
+#define HITS NULL /* one at a time only */
+#else
+/* A hit with four lights, the viewer's side computed once */
+RIVAL_ONE static void hit(const rival_arrays *all, size_t i)
+{
+    const viewer at = viewer_at(all->theta_r[i], all->offset[i]);
+    float sum = 0.0f;
+    put(all, i, draw(at, all->phi_r[i], all->u_lobe[i], all->u_theta[i], all->u_phi[i]));
+    for (size_t k = i; k < i + 4; ++k)
+        sum += density_of(&at, all->phi_r[i], all->theta_light[k % all->n], all->phi_light[k % all->n]);
+    all->pdf_light[i] = sum;
+}
+
+static void hits(const rival_arrays *all)
+{
+    for (size_t i = 0; i < all->n; ++i)
+        hit(all, i);
+}
+
+#define HITS hits
+#endif
+
 const rival RIVAL_NAME(chiang)[] = {
-    {"brown", "Chiang", RIVAL_HOW, NULL, NULL, NULL, NULL, samples, densities, vertex},
+    {"brown", "Chiang", RIVAL_HOW, NULL, NULL, NULL, NULL, samples, densities, vertex, HITS},
     {0},
 };

@@ -20,6 +20,7 @@ CALLS = (
     "sample_hair",
     "pdf_hair",
     "vertex",
+    "hit",
 )
 FLOATS = ctypes.POINTER(ctypes.c_float)
 

@@ -77,7 +77,8 @@ template <class Hair> constexpr rival calls(const char *name)
             Density<Hair::pdf_multiple>::loop,
             Three<Hair::sample_hair>::loop,
             Density<Hair::pdf_hair>::loop,
-            vertex<Hair>};
+            vertex<Hair>,
+            nullptr};
 }
 
 } // namespace

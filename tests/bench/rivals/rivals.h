@@ -32,6 +32,8 @@ typedef struct rival {
     rival_call *sample_direct, *pdf_direct, *sample_multiple, *pdf_multiple;
     rival_call *sample_hair, *pdf_hair; /* the mixture of all lobes */
     rival_call *vertex;                 /* sample_hair and pdf_hair of the light's direction, in one loop */
+    rival_call *
+        hit; /* sample_hair and the sum of pdf_hair of four lights' directions, i's and the next, what they share computed once */
 } rival;
 
 /* The rivals of this build that this processor runs; NULL past the last. */

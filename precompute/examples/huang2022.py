@@ -17,6 +17,7 @@ ROUGHNESS = 0.3  # GGX's alpha
 ABSORPTION = 0.3  # sigma_a times the fibre's radius
 ETA, TILT = 1.55, np.radians(2.0)  # index of refraction; angle of the cuticle's scales
 PATHS, REFLECTIONS = 256, 64  # through the fibre; rays of R. f is then within 2 % of the whole light, in L1
+FARTHEST = np.radians(87.5)  # viewers beyond it, who see scales from behind and no light, get f of this one
 BLOCK = 128  # directions at once: their arrays fit in a cache
 
 
@@ -174,7 +175,7 @@ def scattered(theta_r, out, u):
 
 def bsdf(theta_r, theta_i, phi):
     """The mean of both sides, which differ by the quasi-random numbers alone."""
-    theta_r, theta_i, phi = np.broadcast_arrays(theta_r, theta_i, phi)
+    theta_r, theta_i, phi = np.broadcast_arrays(np.clip(theta_r, -FARTHEST, FARTHEST), theta_i, phi)
     u, light = random_numbers(), np.empty(theta_r.shape)
     for viewer in np.unique(theta_r):
         here = theta_r == viewer

@@ -35,8 +35,7 @@ def parse_values(texts: Sequence[str]) -> dict[str, float]:
 def fixed(path: Path, model: BakedModel, values: Mapping[str, float]) -> BakedModel:
     """The model at path at these values, and standard ones for other parameters; HairlutError, naming path,
     for a parameter that it does not have, or a value beyond its range."""
-    for name, value in values.items():
-        _check(path, model.parameters, name, value)
+    check_values(path, model.parameters, values)
     if not model.parameters:
         return model
     given = model.at(values)
@@ -45,13 +44,15 @@ def fixed(path: Path, model: BakedModel, values: Mapping[str, float]) -> BakedMo
     return replace(given, lobes=lobes)
 
 
-def _check(path: Path, parameters: Sequence[Parameter], name: str, value: float) -> None:
+def check_values(path: Path, parameters: Sequence[Parameter], values: Mapping[str, float]) -> None:
+    """HairlutError, naming path, for a name that is not a parameter's, or a value beyond its range."""
     by_name = {parameter.name: parameter for parameter in parameters}
-    if name not in by_name:
-        raise HairlutError(f"{path}: --at {name}: the model has {', '.join(by_name) or 'no parameters'}")
-    least, most = by_name[name].least, by_name[name].most
-    if not least <= value <= most:
-        raise HairlutError(f"{path}: --at {name}={value:g}: expected {least:g} to {most:g}")
+    for name, value in values.items():
+        if name not in by_name:
+            raise HairlutError(f"{path}: --at {name}: the model has {', '.join(by_name) or 'no parameters'}")
+        least, most = by_name[name].least, by_name[name].most
+        if not least <= value <= most:
+            raise HairlutError(f"{path}: --at {name}={value:g}: expected {least:g} to {most:g}")
 
 
 def as_floats(table: Table) -> Table:

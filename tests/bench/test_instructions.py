@@ -31,6 +31,8 @@ PINNED = {
     ("brown", "viewer_at"): 380,
     ("brown", "viewer_sample"): 778,
     ("brown", "viewer_pdf"): 738,
+    ("strands", "sample_strand_n"): 502,
+    ("strands", "pdf_strand_n"): 534,
 }
 
 

@@ -62,6 +62,31 @@ static inline void strand_at(const hairlut_model *model, float place, float stra
     }
 }
 
+/* Nine times the same strand, a vector and some more: the same bits. Nothing can be read behind the arrays unnoticed. */
+static inline void check_strand_arrays(const hairlut_model *model, const query *q, const float *strand, hairlut_sample s,
+                                       float pdf)
+{
+    enum { N = 9 };
+    const int count = hairlut_parameter_count(model);
+    float values[HAIRLUT_MAX_PARAMETERS * N], *parameters = values + (HAIRLUT_MAX_PARAMETERS - count) * N;
+    float theta_r[N], phi_r[N], offset[N], u_lobe[N], u_theta[N], u_phi[N], theta_i[N], phi_i[N], density[N], solid[N];
+    const hairlut_samples out = {theta_i, phi_i, density, solid};
+    for (int i = 0; i < N; ++i) {
+        theta_r[i] = q->theta_r, phi_r[i] = q->phi_r, offset[i] = q->offset;
+        u_lobe[i] = q->u_lobe, u_theta[i] = q->u_theta, u_phi[i] = q->u_phi;
+        for (int p = 0; p < count; ++p)
+            parameters[p * N + i] = strand[p];
+    }
+    hairlut_sample_strand_n(model, N, parameters, NULL, theta_r, phi_r, offset, u_lobe, u_theta, u_phi, out);
+    for (int i = 0; i < N; ++i) {
+        const hairlut_sample t = {theta_i[i], phi_i[i], density[i], solid[i]};
+        REQUIRE(memcmp(&t, &s, sizeof s) == 0);
+    }
+    hairlut_pdf_strand_n(model, N, parameters, NULL, theta_r, phi_r, offset, theta_i, phi_i, density);
+    for (int i = 0; i < N; ++i)
+        REQUIRE(memcmp(&density[i], &pdf, sizeof pdf) == 0);
+}
+
 static inline void check_strand(const hairlut_model *model, const query *q, float place)
 {
     float strand[HAIRLUT_MAX_PARAMETERS];
@@ -79,6 +104,7 @@ static inline void check_strand(const hairlut_model *model, const query *q, floa
     REQUIRE(isfinite(pdf) && pdf >= 0.0f);
     REQUIRE(!no_number || (s.pdf_angle == 0.0f && pdf == 0.0f));
     REQUIRE(no_number || !is_finite_query(q) || s.pdf_angle > 0.0f);
+    check_strand_arrays(model, q, strand, s, pdf);
 }
 
 static inline void check_query(const hairlut_model *model, const query *q)

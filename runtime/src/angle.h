@@ -65,16 +65,18 @@ static inline float hairlut_cos(float theta)
 /* asin(h) = h + h^3 (a0 + a1 h^2 + ... + a4 h^8) for h up to 1/2: the least largest relative error, 5e-9 before rounding */
 static const float hairlut_arcsine[5] = {0.166667536f, 0.0749524161f, 0.045477096f, 0.0241476111f, 0.0422185473f};
 
-/* asin(h) for |h| <= 1, to 2.5 ulp; beyond 1/2, asin(h) = pi/2 - 2 asin(sqrt((1-h)/2)). */
+/* asin(h) for |h| <= 1, to 2.5 ulp; beyond 1/2, asin(h) = pi/2 - 2 asin(sqrt((1-h)/2)). The range is chosen without a branch: an
+ * offset is as good as random. */
 static inline float hairlut_asin(float h)
 {
-    const float a = fabsf(h);
-    const int large = a > 0.5f;
-    const float z = large ? 0.5f * (1.0f - a) : a * a, r = large ? sqrtf(z) : a;
+    const float a = fabsf(h), half = 0.5f * (1.0f - a), square = a * a, z = square < half ? square : half;
+    const hairlut_quad range = hairlut_quad_all(0.5f - a); /* negative beyond 1/2 */
+    const float r = hairlut_quad_first(hairlut_quad_by_sign(range, hairlut_quad_all(sqrtf(z)), hairlut_quad_all(a)));
     const float p = hairlut_arcsine[3] + z * hairlut_arcsine[4];
     const float q = hairlut_arcsine[0] + z * (hairlut_arcsine[1] + z * (hairlut_arcsine[2] + z * p));
     const float y = r + r * z * q;
-    const float size = large ? hairlut_half_pi_high - 2.0f * y : y;
+    const hairlut_quad beyond = hairlut_quad_all(hairlut_half_pi_high - 2.0f * y);
+    const float size = hairlut_quad_first(hairlut_quad_by_sign(range, beyond, hairlut_quad_all(y)));
     return h < 0.0f ? 0.0f - size : size;
 }
 

@@ -286,7 +286,7 @@ def strands(tmp_path_factory):
 
 
 def scene(mi, strands, bsdf, integrator=ONE_SCATTERING):
-    return mi.load_dict({**scene_dict(mi, strands, bsdf, (24, 20), lamps=False), "integrator": integrator})
+    return mi.load_dict({**scene_dict(mi, strands, bsdf, (24, 20)), "integrator": integrator})
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ def hair_scene(mi, tmp_path_factory):
     write_strands(strand_points(Hair(strands=1500, locks=12, radius=0.014)), strands)
 
     def load(bsdf, radiance, integrator=ONE_SCATTERING):
-        description = scene_dict(mi, strands, bsdf, SIZE, lamps=False)
+        description = scene_dict(mi, strands, bsdf, SIZE)
         environment = {"type": "envmap", "bitmap": mi.Bitmap(radiance.astype(np.float32))}
         return mi.load_dict({**description, "environment": environment, "integrator": integrator})
 

@@ -30,7 +30,6 @@ PAGES = {
     "make render": (
         ("From a BSDF to a lock", "own_hair.md", "a function becomes textures, and a rendered lock of hair"),
         ("Strands that all differ", "strands.md", "a lock, by one model and by one for each group"),
-        ("In a renderer", "render.md", "variance and bias of a rendered lock of hair"),
         ("Mitsuba", "variants.md", "what a picture costs with the C++ plugin and with the Dr.Jit BSDF"),
     ),
     "make fits": (

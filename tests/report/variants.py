@@ -52,7 +52,7 @@ def seconds(mi: Any, variant: str, strands: Path) -> dict[str, float]:
         hairlut.mitsuba.register("hairlut_drjit")
     size, spp = SIZES[variant]
     scenes = {
-        name: mi.load_dict({**scene_dict(mi, strands, bsdf, size, lamps=False), "integrator": INTEGRATOR})
+        name: mi.load_dict({**scene_dict(mi, strands, bsdf, size), "integrator": INTEGRATOR})
         for name, bsdf in samplers(variant).items()
     }
     times: dict[str, list[float]] = {name: [] for name in scenes}

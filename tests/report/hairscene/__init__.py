@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mitsuba with the plugin `hairlut`: the hair scene, its renders, and the page that reports them."""
+"""Hair in Mitsuba for pages and tests: a scene of strands, the engine's own hair and what it draws."""

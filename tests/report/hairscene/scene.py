@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The hair scene, generated from a seed: curved B-spline strands, an environment and an area light.
+"""The hair scene, generated from a seed: curved B-spline strands under a sky.
 
 Lengths are in scene units of about 10 cm; y points up, the camera looks along -z.
 """
@@ -79,23 +79,12 @@ def write_strands(points: Array, path: Path) -> None:
     path.write_text("\n\n".join([*strands, UNREACHED]) + "\n")
 
 
-def environment_pixels(lamps: bool = True, width: int = 128) -> NDArray[np.float32]:
-    """Radiance (width/2, width, 3): dim sky over a dark floor; with `lamps` a window behind and a lamp."""
+def environment_pixels(width: int = 128) -> NDArray[np.float32]:
+    """Radiance (width/2, width, 3): dim sky over a dark floor."""
     height = width // 2
     up = np.cos(np.pi * (np.arange(height) + 0.5) / height)[:, None, None]
-    azimuth = (2.0 * np.pi * (np.arange(width) + 0.5) / width)[None, :, None]
     sky = np.where(up > 0.0, 0.12 + 0.25 * up, 0.04) * np.array([0.75, 0.88, 1.0])
-    pixels = np.broadcast_to(sky, (height, width, 3)).astype(np.float32)
-    if not lamps:
-        return pixels
-    elevation = np.arcsin(up)
-    # azimuth 0 lies behind the hair as the camera sees it, pi / 2 to the right
-    window = (np.cos(azimuth + 0.3) > np.cos(0.45)) & (np.abs(elevation - 0.6) < 0.3)
-    lamp = (np.abs(azimuth - 0.42 * np.pi) < 0.22) & (np.abs(elevation - 0.35) < 0.2)
-    pixels += np.where(window, np.array([9.0, 10.0, 11.0]), 0.0) + np.where(
-        lamp, np.array([26.0, 21.0, 15.0]), 0.0
-    )
-    return pixels.astype(np.float32)
+    return np.broadcast_to(sky, (height, width, 3)).astype(np.float32)
 
 
 def light_hair() -> dict[str, object]:
@@ -125,13 +114,9 @@ def brown_hair() -> dict[str, object]:
     }
 
 
-def scene_dict(
-    mi: Any, strands: Path, bsdf: dict[str, object], size: tuple[int, int], lamps: bool = True
-) -> dict[str, object]:
-    """The scene for `mi.load_dict`, without an integrator: the strands of that file, lights and camera.
-
-    `size` is (width, height) in pixels; without `lamps`, the sky is the only light.
-    """
+def scene_dict(mi: Any, strands: Path, bsdf: dict[str, object], size: tuple[int, int]) -> dict[str, object]:
+    """The scene for `mi.load_dict`, without an integrator: the strands of that file under the sky, and a
+    camera of `size` (width, height) in pixels."""
     transform = mi.ScalarTransform4f()
     view = transform.look_at(origin=[0.6, 0.25, 4.6], target=[0.08, 0.0, 0.3], up=[0, 1, 0])
     film = {
@@ -141,16 +126,9 @@ def scene_dict(
         "rfilter": {"type": "box"},
         "pixel_format": "rgb",
     }
-    description = {
+    return {
         "type": "scene",
         "sensor": {"type": "perspective", "fov": 26, "fov_axis": "x", "to_world": view, "film": film},
-        "environment": {"type": "envmap", "bitmap": mi.Bitmap(environment_pixels(lamps))},
+        "environment": {"type": "envmap", "bitmap": mi.Bitmap(environment_pixels())},
         "hair": {"type": "bsplinecurve", "filename": str(strands), "bsdf": bsdf},
     }
-    if lamps:
-        description["area_light"] = {
-            "type": "rectangle",
-            "to_world": transform.look_at(origin=[-1.8, 1.8, 3.0], target=[0, 0, 0], up=[0, 1, 0]).scale(0.5),
-            "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [45.0, 41.0, 35.0]}},
-        }
-    return description

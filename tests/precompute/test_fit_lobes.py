@@ -95,6 +95,23 @@ def test_offsets_between_those_of_the_fit_take_its_shapes(row):
     assert there.variance(hair(between)) < row.variance(hair(GAMMA)) + 0.002
 
 
+def test_a_highlight_that_no_shape_has_leaves_the_shares_alone(row):
+    """Of a hundred-thousandth of the light, where no lobe draws much: its weights decided all shares."""
+    between = (GAMMA[1:] + GAMMA[:-1]) / 2
+    parts = [
+        np.stack([np.interp(between, GAMMA, part[:, k]) for k in range(2)], axis=1)
+        for part in (row.share, row.turn)
+    ]
+    mass = hair(between)
+    faint = mass.copy()
+    faint[:, 2, 9] += 1e-5
+    expected = type(row)(row.theta, row.phi, *parts)
+    assert (faint / expected.drawn())[:, 2, 9].min() > 100
+    alone, beside = (same_shapes(expected, light, between, True) for light in (mass, faint))
+    np.testing.assert_allclose(beside.share, alone.share, atol=0.01)
+    assert beside.variance(mass) < alone.variance(mass) + 0.001
+
+
 def test_the_next_theta_r_goes_on_from_the_last(row):
     moved = type(row)(np.roll(row.theta, -2, axis=0), row.phi, row.share, row.turn)
     there = next_row(moved, hair(GAMMA, 2 * np.pi / 45), GAMMA, True)

@@ -33,11 +33,11 @@ all inclinations to its own."""
 FIRST_STEPS = 150
 
 
-def excess(p: Array, q: Array) -> Array:
-    """(p / q)^POWER, bounded."""
+def excess(p: Array, q: Array, largest: float = LARGEST) -> Array:
+    """(p / q)^POWER, where p / q counts up to the largest."""
     ratio = np.maximum(q, TINY)
     np.divide(p, ratio, out=ratio)
-    np.minimum(ratio, LARGEST, out=ratio)
+    np.minimum(ratio, largest, out=ratio)
     ratio *= ratio
     ratio *= ratio
     return ratio

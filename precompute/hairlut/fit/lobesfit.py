@@ -17,12 +17,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..lobes import Array
-from .factor import FILL, POWER, TINY, excess, filled, products, update, variance
+from .factor import FILL, LARGEST, POWER, TINY, excess, filled, products, update, variance
 from .highlights import Highlight, highlights
 from .turning import TWO_PI, track, turned
 
 FIRST_SWEEPS, TRIAL_SWEEPS, SWEEPS = 60, 16, 16
 SAME_SWEEPS = 10
+MENDED = 10.0
+"""The largest p / q that counts where only shares and turns move: a faint highlight that no shape has makes
+larger ones, which no share can mend, and to the power of POWER they would decide all shares alone."""
 FREE_STEPS = 10
 FRESH = 0.02  # part of what the last theta_r lets expect that is replaced by the new one's light
 FAINT = 1e-3  # a lobe of this share is half what was expected
@@ -130,7 +133,7 @@ def next_row(expected: Row, mass: Array, angle: Array, turning: bool) -> Row:
 def same_shapes(expected: Row, mass: Array, angle: Array, turning: bool) -> Row:
     """Shares and turns for lobes that keep their shapes."""
     there = _moved(expected, mass, turning, False)
-    return improved(there, mass, angle, SAME_SWEEPS, turning, there, shapes=False)
+    return improved(there, mass, angle, SAME_SWEEPS, turning, there, shapes=False, largest=MENDED)
 
 
 def _moved(expected: Row, mass: Array, turning: bool, moving: bool) -> Row:
@@ -155,16 +158,17 @@ def improved(
     turning: bool,
     expected: Row | None = None,
     shapes: bool = True,
+    largest: float = LARGEST,
 ) -> Row:
     """The row after sweeps of updates for the light mass (N, n, m). turning: its turns move; shapes: its
-    inclinations and azimuths do. expected: what a lobe without light keeps."""
+    inclinations and azimuths do. expected: what a lobe without light keeps. largest: p / q that counts."""
     light = mass.sum(axis=(0, 2))[:, None] / len(mass)
     for sweep in range(sweeps):
         if turning and sweep % 2:
             row = replace(row, turn=stepped(row, mass, angle, expected))
         at = row.turned()
         azimuths = row.share[..., None] * at
-        e = excess(mass, np.matmul(row.theta, azimuths))
+        e = excess(mass, np.matmul(row.theta, azimuths), largest)
         gain = np.matmul(row.theta.T, e)  # (N, K, m)
         share = row.share * np.einsum("okm,okm->ok", gain, at) ** (1 / POWER)
         theta, phi = row.theta, row.phi

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "batch.h"
+#include "viewer.h"
 #include "internal.h"
 
 enum { MOST = 700, SLACK = 32, INPUTS = 6 + HAIRLUT_MAX_LOBES, ARRAYS = INPUTS + 5, AXES = 3 /* of parameters, at most */ };
@@ -355,6 +356,30 @@ static void check_pdf(const call *c)
     check_canary(c, out, n);
 }
 
+/* Viewers, one for each element, give what is expected of the arrays. */
+static void check_viewers(const call *c)
+{
+    static float got[5][MOST];
+    float (*in)[MOST] = inputs, shares[HAIRLUT_MAX_LOBES], strand[AXES];
+    const hairlut_one *one = &c->batch->one;
+    for (size_t i = 0; i < c->n; ++i) {
+        hairlut_view view;
+        for (int k = 0; k < HAIRLUT_MAX_LOBES; ++k)
+            shares[k] = in[6 + k][i];
+        for (int p = 0; p < AXES; ++p)
+            strand[p] = parameters[p][i];
+        one->view(&view, c->model, c->has_parameters ? strand : NULL, c->has_shares ? shares : NULL, in[0][i], in[1][i],
+                  c->has_offset ? in[4][i] : 0.0f);
+        const hairlut_sample s = one->sample_view(&view, in[5][i], in[2][i], in[3][i]);
+        const float fields[5] = {s.theta_i, s.phi_i, s.pdf_angle, s.pdf_solid_angle,
+                                 one->pdf_view(&view, directions[0][i], directions[1][i])};
+        for (int k = 0; k < 5; ++k)
+            got[k][i] = fields[k];
+    }
+    for (int k = 0; k < 5; ++k)
+        compare("a viewer's", c->batch->name, c->n, k < 4 ? expected[k] : expected_pdf, got[k]);
+}
+
 static void check_call(const call *c)
 {
     fill_inputs(c->n);
@@ -363,6 +388,8 @@ static void check_call(const call *c)
     make_directions(c->n, expected[0], expected[1]);
     one_by_one(c, one_pdf);
     check_pdf(c);
+    if (c->lobe < 0 && c->batch->one.view)
+        check_viewers(c);
     for (int k = 0; k < 4; ++k)
         add_to_checksum(expected[k], c->n);
     add_to_checksum(expected_pdf, c->n);

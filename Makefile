@@ -30,7 +30,7 @@ help:
 	@echo "make report   regenerate tests/report/pages/: speed against error, hard cases, the study, shaders, explorer"
 	@echo "make fits     fit 42 hairs and one over parameters, hold them against their authors' samplers (15 minutes or more of one core)"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
-	@echo "make render   render hair with Mitsuba: locks of hair, what it costs (a few minutes)"
+	@echo "make render   render hair with Mitsuba: locks of hair, what it costs"
 	@echo "make fuzz     coverage-guided fuzzing, SECONDS_EACH=15 a fuzzer: files, tables in memory, table to file to table"
 	@echo "make clean    remove $(VENV) and $(BUILD)/"
 

@@ -44,8 +44,7 @@ def measured(subject: Subject) -> dict:
         paths = write_model(Path(folder), summary.with_errors(found))
         seconds = process_time() - start
         size = sum(path.stat().st_size for path in paths)
-        model = hairlut.load(folder)
-        kept = quadrature(subject, lambda *at: model.pdf(at[0], 0.0, at[1], at[2], offset=at[3]))
+        kept = through_library(subject, folder)
     promised = summary.promise(found)
     row = {
         "promise": promised.relative_variance,
@@ -65,6 +64,12 @@ def measured(subject: Subject) -> dict:
     if subject.draws:
         row["draws"] = of_draws(subject)
     return row
+
+
+def through_library(subject: Subject, folder: str) -> dict:
+    """quadrature() of the model in a folder."""
+    model = hairlut.load(folder)
+    return quadrature(subject, lambda *at: model.pdf(at[0], 0.0, at[1], at[2], offset=at[3]))
 
 
 def quadrature(subject: Subject, pdf) -> dict:

@@ -8,19 +8,26 @@ W q >= p. With the inclinations A_k of K lobes, W q = sum of A_k(theta_i) b_k(ph
 and offset the least mass of b >= 0 with A b >= p is a linear program. Its value is exact for these
 inclinations, whatever the azimuths are, turned or not. For others it is not a bound, so they are fitted with
 powers of p / q (factor.py) that care for large weights more and more.
+
+Textures have larger weights than these. A second table says why: the weights of a fit's rows on their cells,
+and those of the textures baked from them, by what these may lose.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+import tempfile
+from pathlib import Path
 
 import numpy as np
 from scipy.optimize import linprog
 
+from hairlut.exr import write_model
 from hairlut.files import write_whole
 from hairlut.fit import factor, hair, lobesfit, promise, refine
 from hairlut.fit.effort import EFFORTS
+from report import fits
 from report.hairs import Subject, near_field
 from report.markdown import table
 from report.places import PAGES
@@ -31,6 +38,10 @@ LOBES = 1, 2, 3, 4, 5
 POWERS = 4, 8, 16
 STEPS = 300
 AXES = refine.Axes(3, 7, 32, 96)
+TEXTURES = "chiang 0.3 0.3 0.6"
+TEXTURE_LOBES = 3
+TEXTURE_AXES = refine.Axes(37, 11, 32, 56), refine.Axes(73, 21, 64, 112)  # hairlut fit's, and twice as fine
+EASES = 1.0, 1 / 4, 1 / 16, 1 / 64  # times what a table may lose; its largest weight by the square root
 
 TEXT = """
 ## The largest weight that lobes can reach
@@ -41,8 +52,20 @@ p / q to the power of 4, as `hairlut fit` does, 8 or 16. "Least" is the least po
 of that fit and azimuths of any shape at every offset, by linear programs (weights.py has the derivation).
 Each lobe of Chiang's hair is a product of an inclination and an azimuth that turns with the offset, so that
 four lobes can reach 1. A sampler keeps more than that: a part of {fill} of each inclination has the shape of
-all light and the same part of each azimuth is even, so that no direction is without samples, and textures
-add what lies between their columns and rows: the weights of the tables above.
+all light and the same part of each azimuth is even, so that no direction is without samples. Textures add the
+weights of the next table, and those of the tables above.
+
+"""
+
+TEXTURES_TEXT = """
+## The largest weight that textures reach, by their size
+
+{hair}, {lobes} lobes. "Weight" and V are of the textures, read through the C library by the
+quadrature of the tables above. "Lobes" is the largest weight of the fit's lobes themselves, on their cells,
+at the rows nearest to the quadrature's viewers and the offsets up to its outermost, mean and worst: what
+textures without a loss of their own would have there. "At the rim" is the same at the offsets beyond, which
+the quadrature does not see. The first line of each fineness lets tables lose what `hairlut fit` does, each
+further one a quarter of the line before and half as large a weight.
 
 """
 
@@ -56,6 +79,7 @@ def main() -> int:
     text = TEXT.format(
         theta_i=AXES.theta_i, phi=AXES.phi, offsets=AXES.offset, fill=f"{factor.FILL:g}"
     ) + table(columns, rows)
+    text += of_textures(subjects[TEXTURES])
     print(write_whole(PAGES / "fit_weights.md", text.encode()))
     return 0
 
@@ -73,9 +97,7 @@ def of_hair(subject: Subject) -> list[tuple]:
                 bright = above(mass, edges)
                 theta, azimuth = products(lobesfit._flat(mass), count, power)
                 q = (theta @ azimuth).reshape(len(theta), len(mass), -1).swapaxes(0, 1)
-                fitted.append(
-                    np.where(bright, mass / (q / q.sum(axis=(1, 2), keepdims=True)), 0.0).max(axis=(1, 2))
-                )
+                fitted.append(_weights(mass, edges, q / q.sum(axis=(1, 2), keepdims=True)))
                 if power == POWERS[-1]:
                     least.append([least_weight(p, theta, at) for p, at in zip(mass, bright, strict=True)])
             cells.append(shown(fitted))
@@ -84,8 +106,48 @@ def of_hair(subject: Subject) -> list[tuple]:
     return found
 
 
+def of_textures(subject: Subject) -> str:
+    """The second table: what textures of one hair reach, by what each may lose."""
+    given = hair.of_density(subject.density, True)
+    found = []
+    for axes in TEXTURE_AXES:
+        angle = given.angles(axes.offset)
+        data = refine._cells(given, given.rows(axes.theta_r), angle, axes, EFFORTS[0])
+        rows = refine.fit_rows(data, angle, TEXTURE_LOBES, True)
+        near = [int(abs(data.theta_r - viewer).argmin()) for viewer in fits.VIEWERS]
+        on_cells = np.array([_weights(data.mass[j], data.theta_edges[j], rows[j].drawn()) for j in near])
+        inside = np.sin(angle) < fits.OFFSETS[-1]
+        for ease in EASES:
+            baked = refine.bake(data, rows, "hair", given.mirrored, refine.TABLE_PART * fits.TOLERANCE, ease)
+            with tempfile.TemporaryDirectory() as folder:
+                size = sum(path.stat().st_size for path in write_model(Path(folder), baked))
+                kept = fits.through_library(subject, folder)
+            cells = f"{axes.theta_r} x {axes.offset} x {axes.theta_i} x {axes.phi}"
+            v = f"{np.mean(kept['variance']):.4f}"
+            found.append(
+                (
+                    cells,
+                    shown(on_cells[:, inside]),
+                    shown(on_cells[:, ~inside]),
+                    f"1/{round(1 / ease)}",
+                    f"{size / 1024:.0f}",
+                    v,
+                    f"{kept['weight']:.2f}",
+                )
+            )
+            print(*found[-1], flush=True)
+    columns = "rows, offsets, theta_i, phi", "lobes", "at the rim", "loss allowed", "KB", "V", "weight"
+    text = TEXTURES_TEXT.format(hair=subject.name.capitalize(), lobes=TEXTURE_LOBES)
+    return text + table(columns, found)
+
+
 def shown(weights: list) -> str:
     return f"{np.mean(weights):.2f} ({np.max(weights):.2f})"
+
+
+def _weights(mass: np.ndarray, edges: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """(N,) the largest weight at each offset, of the bright cells of the masses, drawn by q."""
+    return np.where(above(mass, edges), mass / q, 0.0).max(axis=(1, 2))
 
 
 def above(mass: np.ndarray, edges: np.ndarray) -> np.ndarray:

@@ -9,7 +9,8 @@ import pytest
 
 from hairlut import cli, exr
 from hairlut.axes import Parameter
-from hairlut.fit.strands import box, nodes, shapes, tied
+from hairlut.fit import lobesfit, turning
+from hairlut.fit.strands import box, nodemixture, nodes, shapes, tied
 
 HAIR = """
 import numpy as np
@@ -83,9 +84,42 @@ def test_a_wrong_parameter_costs_samples(fitted, bsdf, drawn, true):
 
 
 def test_the_promise_is_in_the_header(fitted):
-    told = fitted.errors["mixture"]
-    assert told["low"] < told["relative_variance"] < told["high"] < 0.006
-    assert told["median_relative_variance"] < told["percentile99_relative_variance"]
+    promised = fitted.errors["mixture"]
+    assert promised["low"] < promised["relative_variance"] < promised["high"] < 0.006
+    assert promised["median_relative_variance"] < promised["percentile99_relative_variance"]
+
+
+def test_textures_over_parameters_take_no_more_memory_than_they_may(tmp_path, capsys):
+    (tmp_path / "hair.py").write_text(HAIR)
+    fit = ["fit", str(tmp_path / "hair.py"), "--out", str(tmp_path), "--json", "--budget", "1", "--size"]
+    sizes = {}
+    for size in ("1000", "16", "1"):
+        assert cli.main([*fit, size]) == 0
+        sizes[size] = json.loads(capsys.readouterr().out)
+    assert sizes["1000"]["bytes"] > 16 * 1024 >= sizes["16"]["bytes"]
+    assert "size" not in sizes["16"]["limits"]
+    assert "size" in sizes["1"]["limits"]
+
+
+def test_lobes_that_changed_places_at_some_offsets_are_put_back():
+    """Theirs draw the light at each offset, but not between: those of the row before do both."""
+    angle = np.linspace(0, 1.2, 9)
+    m = 96
+    x = (np.arange(m) + 0.5) / m * turning.TWO_PI - np.pi
+    bump = np.exp(8 * (np.cos(x) - 1))
+    theta = np.full((8, 2), 1 / 8)
+    phi = np.tile(bump / bump.sum(), (2, 1))
+    share, turn = np.tile([0.7, 0.3], (9, 1)), np.stack([-angle, 2.5 + angle], axis=1)
+    good = lobesfit.Row(theta, phi, share, turn)
+    swapped = share.copy(), turn.copy()
+    for part in swapped:
+        part[3:6] = part[3:6, ::-1]
+    bad = lobesfit.Row(theta, phi, *swapped)
+    mass = good.drawn()
+    assert bad.variance(mass) < 1e-6
+    fitting = nodemixture.Fitting(None, [], np.zeros(1), angle, True)
+    assert fitting._steadier(bad, good, mass).turn == pytest.approx(turn, abs=0.02)
+    assert fitting._steadier(good, bad, mass) is good
 
 
 GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
@@ -112,6 +146,11 @@ GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
         (
             "PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, theta_i, phi, offset, a, b):\n    return 1.0\n",
             "takes b, which PARAMETERS does not name",
+        ),
+        ("PARAMETERS = {'a': (0, 1), 'a': (0, 2)}\n" + GOOD, "PARAMETERS has 'a' twice: expected each"),
+        (
+            "PARAMETERS = {'a': (0, 1)}\n" + GOOD.replace("a)", "a, /)", 1),
+            "takes a by position only, and parameters are passed by name: put it behind",
         ),
         ("PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, a):\n    return 1.0\n", "expected a function bsdf("),
         (

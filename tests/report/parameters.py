@@ -30,7 +30,7 @@ from report.places import PAGES, ROOT
 
 EXAMPLE = ROOT / "precompute" / "examples" / "chiang_parameters.py"
 TOLERANCES = 0.03, 0.01, 0.003
-BUDGET = 1200.0
+BUDGET, SIZE = 1200.0, 2.0**20  # seconds, bytes
 PLACES, OFFSETS = 1000, 1
 POINTS = 256, 256  # of theta_i around the mirror direction and over the sphere, and of phi
 WAYS = 48  # places at which the two ways are compared
@@ -41,7 +41,7 @@ DATA = PAGES / "parameters.json"
 def fitted(tolerance: float, given: box.Box) -> dict:
     """What a fit costs and promises, and what its files keep at random parameters."""
     start = process_time()
-    found = fit.fit(given, "hair", tolerance, None, BUDGET, lambda stage, share: None)
+    found = fit.fit(given, "hair", tolerance, None, BUDGET, lambda stage, share: None, SIZE)
     with tempfile.TemporaryDirectory() as folder:
         paths = exr.write_model(Path(folder), summary.with_errors(found))
         seconds = process_time() - start

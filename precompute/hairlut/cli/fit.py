@@ -15,7 +15,7 @@ from . import OK, add_command
 
 DEFAULT_TOLERANCE = 0.01
 DEFAULT_BUDGET, DEFAULT_BUDGET_OF_PARAMETERS = 120.0, 600.0
-DEFAULT_SIZE = 256.0  # KB
+DEFAULT_SIZE, DEFAULT_SIZE_OF_PARAMETERS = 256.0, 1024.0  # KB
 MAX_LOBES = 8
 
 Report = Callable[[str, float], None]
@@ -94,8 +94,8 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         "--size",
         type=float,
         metavar="KB",
-        help="memory that the textures of a BSDF or a grid without parameters may take: where they would "
-        f"take more, they lose more (default: {DEFAULT_SIZE:g})",
+        help="memory that the textures of a BSDF or a grid may take: where they would take more, they lose "
+        f"more (default: {DEFAULT_SIZE:g}, for a hair with parameters {DEFAULT_SIZE_OF_PARAMETERS:g})",
     )
     parser.add_argument("--json", action="store_true", help="print the result as JSON, and nothing else")
     parser.add_argument(
@@ -150,7 +150,8 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
 
         if args.plot:
             raise HairlutError("--plot: draws have no density to plot: leave it out")
-        _no_size(args, "draws")
+        if args.size is not None:
+            raise HairlutError("--size: the textures of draws take what they need: leave it out")
         report("cross-validating", 0.0)
         found = drawn.fit(data, name, args.lobes)
         text, figures = summary.drawn_text(args.data, data, found), summary.drawn_data(data, found)
@@ -180,11 +181,11 @@ def _of_parameters(
     from ..fit.strands import box, summary
     from ..fit.strands import fit as fitting
 
-    _no_size(args, "a hair with parameters")
+    size = 1024 * (args.size or DEFAULT_SIZE_OF_PARAMETERS)
     budget = args.budget or DEFAULT_BUDGET_OF_PARAMETERS
     with _named(args.data):
         given = box.of_parameters(density, parameters, offsets)
-        found = fitting.fit(given, name, args.tolerance, args.lobes, budget, report)
+        found = fitting.fit(given, name, args.tolerance, args.lobes, budget, report, size)
     if args.plot:
         _plot(args.plot, lambda kind: _plotted_parameters(found, name, kind))
     what = f"a BSDF over {', '.join(parameter.name for parameter in parameters)}"
@@ -193,11 +194,6 @@ def _of_parameters(
     at = found.measured
     losses = promise.Losses(at.theta_r, at.offset, at.variance, at.weight, at.light)
     return summary.with_errors(found), text, figures, warnings.warnings(given.hair, losses)
-
-
-def _no_size(args: argparse.Namespace, what: str) -> None:
-    if args.size is not None:
-        raise HairlutError(f"--size: the textures of {what} take what they need: leave it out")
 
 
 @contextmanager

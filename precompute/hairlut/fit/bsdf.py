@@ -26,6 +26,7 @@ A sampler draws f cos(theta_i) per steradian, which is f cos(theta_i)^2 per rad^
 
 from __future__ import annotations
 
+import ast
 import inspect
 from collections.abc import Callable
 from pathlib import Path
@@ -64,6 +65,7 @@ def load(path: Path) -> Bsdf:
     for name in vars(module):
         if name != "PARAMETERS" and name.upper() == "PARAMETERS":
             raise HairlutError(f"{path}: defines {name}: name it PARAMETERS, {EXPECTED_PARAMETERS}")
+    _check_doubled(path)
     parameters = _parameters(path, getattr(module, "PARAMETERS", {}))
     count = _arguments(path, function, [parameter.name for parameter in parameters])
     return Bsdf(_Bsdf(path, guarded(function, path), count), count == 4, parameters)
@@ -90,6 +92,23 @@ class _Bsdf:
             raise error if self._full else first from None
         self._full = True
         return values
+
+
+def _check_doubled(path: Path) -> None:
+    """Refuses a PARAMETERS that writes one name twice, of which Python keeps the last."""
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if not isinstance(node, ast.Assign | ast.AnnAssign):
+            continue
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        if not any(isinstance(t, ast.Name) and t.id == "PARAMETERS" for t in targets):
+            continue
+        keys = [k.value for k in getattr(node.value, "keys", []) if isinstance(k, ast.Constant)]
+        for number, key in enumerate(keys):
+            if key in keys[:number]:
+                raise HairlutError(
+                    f"{path}:{node.lineno}: PARAMETERS has {key!r} twice: expected each parameter once: "
+                    "leave one of them out"
+                )
 
 
 def _parameters(path: Path, given: object) -> tuple[Parameter, ...]:
@@ -127,11 +146,20 @@ def _arguments(path: Path, function: Callable, names: list[str]) -> int:
     """How many arguments a function takes before its parameters: 3, or 4 with an offset."""
     signature = inspect.signature(function)
     arguments = signature.parameters.values()
+    unnamed = [a.name for a in arguments if a.kind is a.POSITIONAL_ONLY and a.name in names]
+    if unnamed:
+        raise HairlutError(
+            f"{path}: bsdf{signature} takes {unnamed[0]} by position only, and parameters are passed by "
+            "name: put it behind the '/', or leave the '/' out"
+        )
     by_name = [a.name for a in arguments if a.kind in (a.POSITIONAL_OR_KEYWORD, a.KEYWORD_ONLY)]
     if not any(a.kind is a.VAR_KEYWORD for a in arguments):
         for name in names:
             if name not in by_name:
-                raise HairlutError(f"{path}: bsdf{signature} takes no {name}, which PARAMETERS names")
+                raise HairlutError(
+                    f"{path}: bsdf{signature} takes no {name}, which PARAMETERS names: "
+                    f"add {name} to bsdf's arguments, or take it out of PARAMETERS"
+                )
     needed = [
         a
         for a in arguments
@@ -139,7 +167,10 @@ def _arguments(path: Path, function: Callable, names: list[str]) -> int:
     ]
     extra = [a.name for a in needed[4:]] or [a.name for a in needed if a.kind is a.KEYWORD_ONLY]
     if names and extra:
-        raise HairlutError(f"{path}: bsdf{signature} takes {extra[0]}, which PARAMETERS does not name")
+        raise HairlutError(
+            f"{path}: bsdf{signature} takes {extra[0]}, which PARAMETERS does not name: add its range, "
+            f'PARAMETERS = {{"{extra[0]}": (least, most), ...}}, or give the argument a default'
+        )
     if len(needed) not in (3, 4) or extra:
         raise HairlutError(f"{path}: bsdf{signature}: {EXPECTED}{', then its parameters' * bool(names)}")
     return len(needed)

@@ -5,31 +5,36 @@ A place in the box is a tuple of values, one a parameter, in the order of the pa
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 
 from ...axes import Parameter
 from ...lobes import Array
-from ..cells import Density
+from .. import cells
+from ..cells import Cells, Density
 from ..hair import Hair, of_density
 from .firstround import FULL, BoxEffort
 
 Place = tuple[float, ...]
+KNOWN = 96  # sets of cells that are kept: lobes are followed along a parameter several times
 RATIO = 4.0  # of the ends of a range from which on steps along it are equal factors
 
 
 @dataclass(frozen=True)
 class Box:
     """density: of (theta_r, theta_i, phi, offset, **parameters) per rad^2. hair: its symmetry and ranges at
-    all places, with the density at the standard one. effort: how much of it a fit looks at."""
+    all places, with the density at the standard one. effort: how much of it a fit looks at. known: cells that
+    were evaluated last."""
 
     density: Callable[..., Array]
     parameters: tuple[Parameter, ...]
     hair: Hair
     effort: BoxEffort = FULL
+    known: OrderedDict[Hashable, Cells] = field(default_factory=OrderedDict, compare=False, repr=False)
 
     @property
     def standard(self) -> Place:
@@ -51,6 +56,16 @@ class Box:
         """The mean of the densities at several places."""
         each = [self.density_at(place) for place in places]
         return lambda *at: sum(density(*at) for density in each) / len(each)
+
+    def cells_at(self, place: Place, theta_r: Array, offset: Array, edges: Array, count: int) -> Cells:
+        """The light at a place (cells.of_density)."""
+        key = place, theta_r.tobytes(), offset.tobytes(), edges.tobytes(), count
+        if key not in self.known:
+            self.known[key] = cells.of_density(self.density_at(place), theta_r, offset, edges, count)
+        self.known.move_to_end(key)
+        while len(self.known) > KNOWN:
+            self.known.popitem(last=False)
+        return self.known[key]
 
     def corners(self) -> list[Place]:
         """Corners of the box: all of them, or some that have every parameter at both ends."""

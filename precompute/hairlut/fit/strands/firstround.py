@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..cells import AROUND, GAUSS
+from ..cells import AROUND, FINE, GAUSS, HARMONICS, PLACES
 from ..effort import Pace
+from ..promise import POINTS
 
 FIRST_ROUND = 0.8  # of the budget
 CHOICE = 400  # sweeps of a block while the number of lobes is chosen
@@ -16,6 +17,7 @@ PARTS = 1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6
 """Parts of the way through the rows at which dependences are found: grazing, hair is unlike elsewhere."""
 MODES = 3.0  # times that lobes are followed along a parameter
 TOGETHER = 3.0  # places that are fitted together
+PAIRS = 48  # places, at most, at which an axis' part of the loss is measured
 NODES = 8.0  # of a parameter
 MIXED = 12.0  # of the mixture
 
@@ -25,7 +27,8 @@ class BoxEffort:
     """rows: of theta_r; offset: of the mixture; fitted_offsets: by which shapes are fitted; theta_i: cells;
     most_phi: cells of the azimuth, at most; steps: values of a parameter along which lobes are followed;
     sweeps: of a block's lobes; corners: of the box that are looked at; places: that are measured; nodes: of
-    the mixture, all its parameters together; edge_azimuths: by which cells of theta_i are chosen."""
+    the mixture, all its parameters together; edge_azimuths: by which cells of theta_i are chosen;
+    edges_of_phi: whether grazing viewers too choose the cells of the azimuth."""
 
     rows: int = 49
     offset: int = 25
@@ -38,14 +41,16 @@ class BoxEffort:
     places: int = 384
     nodes: int = 128
     edge_azimuths: int = AROUND
+    edges_of_phi: bool = True
 
 
 FULL = BoxEffort()
 EFFORTS = (
     FULL,
     BoxEffort(25, 13, 9, 24, 192, 9, 16, 8, 192, 64, AROUND // 2),
-    BoxEffort(13, 9, 7, 24, 96, 5, 12, 4, 96, 24, AROUND // 3),
-    BoxEffort(13, 7, 5, 16, 64, 5, 8, 2, 48, 12, AROUND // 4),
+    BoxEffort(13, 9, 7, 24, 96, 5, 12, 4, 96, 24, AROUND // 3, False),
+    BoxEffort(13, 7, 5, 16, 64, 5, 8, 2, 48, 12, AROUND // 4, False),
+    BoxEffort(13, 5, 3, 12, 48, 3, 6, 2, 24, 6, AROUND // 8, False),
 )
 """From full to least."""
 
@@ -65,4 +70,17 @@ def seconds(pace: Pace, effort: BoxEffort, parameters: int, offsets: bool, phi: 
     shares = MIXED * effort.rows * (effort.offset / effort.fitted_offsets if offsets else 1)
     blocks = 2 * effort.corners + along + NODES * effort.rows * 2 + shares
     sweeps = 2 * effort.corners * CHOICE + (along + NODES * effort.rows * 2) * effort.sweeps + shares * SHARES
-    return cells * (sweeps * SWEEP * pace.cell + blocks * GAUSS.size**2 * pace.value)
+    edges = blocks * 3 * FINE * effort.edge_azimuths
+    viewers = 3 if effort.edges_of_phi else 1
+    of_phi = viewers * (effort.fitted_offsets / 2 if offsets else 1) * sum(PLACES) * HARMONICS
+    of_phi *= 2 * effort.corners + along / len(PARTS) / 2 + NODES + MIXED
+    measured = (effort.places + 4 * pairs(effort)) * (
+        sum(PLACES) * HARMONICS + (4 if offsets else 1) * POINTS * 2 * phi
+    )
+    values = blocks * cells * GAUSS.size**2 + edges + of_phi + measured
+    return cells * sweeps * SWEEP * pace.cell + values * pace.value
+
+
+def pairs(effort: BoxEffort) -> int:
+    """Places at which an axis' part of the loss is measured."""
+    return min(PAIRS, effort.places // 2)

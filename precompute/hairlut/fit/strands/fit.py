@@ -20,7 +20,7 @@ from ...errors import HairlutError
 from ...lobes import HALF_PI, Array
 from ...model import BakedModel
 from .. import cells, effort
-from ..refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS
+from ..refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS, stored
 from . import dependence, firstround, losses, nodemixture, nodeshapes, nodetables, shapes
 from .box import Box, Place
 from .dependence import Dependence
@@ -31,6 +31,8 @@ from .shapes import Shapes
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
 LIMITS = {"theta_r": 145, "offset": 65}
 TWELVES = 12  # rows of theta_r are so many intervals, times a whole number
+MOST_EASE = 64.0  # times as much as usual that tables may lose, where the textures would be too large
+BANDS = 5  # of a coordinate, where the worst places are named
 RARE = 5.0  # times the tolerance that the worst hundredth of places may lose
 
 Report = Callable[[str, float], None]
@@ -40,7 +42,8 @@ Report = Callable[[str, float], None]
 class FittedBox:
     """A baked model over the parameters of a box. counts: rows of theta_r and offsets that were fitted;
     allowed: V that each axis might cost; reach: V that so many lobes have on the cells they were fitted to;
-    measured: V and weights at random places; lost: V that each axis costs (losses.py)."""
+    measured: V and weights at random places; lost: V that each axis costs (losses.py); too_large: whether the
+    textures take more memory than they may; out_of_time: whether finer axes were not tried for want of it."""
 
     box: Box
     model: BakedModel
@@ -49,15 +52,19 @@ class FittedBox:
     reach: float
     measured: Measured
     lost: dict[str, float]
+    too_large: bool = False
+    out_of_time: bool = False
 
 
 class _OutOfTime(Exception):
     pass
 
 
-def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float, report: Report) -> FittedBox:
+def fit(
+    box: Box, name: str, tolerance: float, lobes: int | None, budget: float, report: Report, size: float
+) -> FittedBox:
     """The model of a hair with parameters. lobes: how many, or None to choose; budget: seconds that it may
-    take, about."""
+    take, about; size: bytes that its textures may take, for which they lose more where they must."""
     start = perf_counter()
     random = np.random.default_rng(0)
     box = replace(box, effort=_effort(box, budget))
@@ -73,14 +80,18 @@ def fit(box: Box, name: str, tolerance: float, lobes: int | None, budget: float,
         try:
             if full.theta_r.size != counts["theta_r"]:
                 full = _at_anchor(until, place, count, counts["theta_r"], so_far)
-            fitted = _fit_once(until, name, full, found, counts, allowed, tolerance, random, so_far)
+            fitted = _fit_once(
+                until, name, full, found, counts, allowed, tolerance, size, start + budget, random, so_far
+            )
         except _OutOfTime:
-            return best
-        if best is None or _score(fitted) < _score(best):
+            return replace(best, out_of_time=True)
+        if best is None or _score(fitted, tolerance) < _score(best, tolerance):
             best = fitted
         finer = _finer(fitted, tolerance)
-        if finer is None or perf_counter() + (perf_counter() - began) > start + budget:
+        if finer is None or fitted.too_large:
             return best
+        if perf_counter() + (perf_counter() - began) > start + budget:
+            return replace(best, out_of_time=True)
         counts, allowed = finer
 
 
@@ -98,12 +109,28 @@ def _effort(box: Box, budget: float) -> BoxEffort:
 
 
 def limits(found: FittedBox, tolerance: float) -> list[str]:
-    """What keeps a fit from the tolerance: names of parameters and axes, "lobes", or nothing."""
+    """What keeps a fit from the tolerance, or nothing: names of parameters and axes, "size", "budget"; or
+    where the worst places are."""
     v, weight = found.measured.variance.mean(axis=1), found.measured.weight
     near = v.mean() <= found.reach + tolerance and np.quantile(v, 0.99) <= found.reach + RARE * tolerance
     if near and np.quantile(weight, 0.99) <= HEAVIEST:
         return []
-    return list(_standing_out(found, tolerance)) or ["lobes"]
+    size, budget = ["size"] * found.too_large, ["budget"] * found.out_of_time
+    return [*_standing_out(found, tolerance), *size, *budget] or [_worst_band(found)]
+
+
+def _worst_band(found: FittedBox) -> str:
+    """The part of a coordinate's range that loses most, in words."""
+    v, at = found.measured.variance.mean(axis=1), found.measured
+    coordinates = {p.name: at.parameters[:, i] for i, p in enumerate(found.box.parameters)}
+    coordinates["theta_r_deg"] = np.degrees(at.theta_r)
+    bands = []
+    for name, values in coordinates.items():
+        edges = np.linspace(values.min(), values.max(), BANDS + 1)
+        band = np.clip(np.digitize(values, edges) - 1, 0, BANDS - 1)
+        for b in np.unique(band):
+            bands.append((v[band == b].mean(), f"{name} from {edges[b]:.3g} to {edges[b + 1]:.3g}"))
+    return max(bands)[1]
 
 
 def _standing_out(found: FittedBox, tolerance: float) -> dict[str, float]:
@@ -132,9 +159,11 @@ def _finer(found: FittedBox, tolerance: float) -> tuple[dict[str, int], dict[str
     return None if (counts, allowed) == (found.counts, found.allowed) else (counts, allowed)
 
 
-def _score(found: FittedBox) -> float:
-    v = found.measured.variance.mean(axis=1)
-    return float(v.mean() + np.quantile(v, 0.99) / RARE)
+def _score(found: FittedBox, tolerance: float) -> tuple[bool, float]:
+    """What is lower for a better fit."""
+    v, weight = found.measured.variance.mean(axis=1), found.measured.weight.max(axis=1)
+    too_heavy = max(0.0, float(np.quantile(weight, 0.99)) / HEAVIEST - 1)
+    return found.too_large, float(v.mean() + np.quantile(v, 0.99) / RARE + tolerance * too_heavy)
 
 
 def _until(box: Box, last: float) -> Box:
@@ -192,28 +221,44 @@ def _fit_once(
     counts: dict[str, int],
     allowed: dict[str, float],
     tolerance: float,
+    size: float,
+    last: float,
     random: np.random.Generator,
     report: Report,
 ) -> FittedBox:
     along = nodeshapes.chosen(
-        box, found, len(anchor.theta_r), allowed, lambda share: report("choosing nodes", share)
+        box, found, len(anchor.theta_r), allowed, size, lambda share: report("choosing nodes", share)
     )
     start, theta, phi = nodeshapes.at_nodes(
         box, anchor, found, along, lambda share: report("fitting lobes", share)
     )
     reach = float(np.mean([one.variance() for one in (*theta.at.values(), *phi.at.values())]))
     report("baking", 0.0)
-    lobes = nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance)
+    ease, lobes = 1.0, nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance, 1.0)
     axes = nodemixture.depends(box, lobes, start, SHARE_OF_AXIS * tolerance)
     _check_axes(box, axes, "shares and turns")
     angle = box.hair.angles(counts["offset"])
     mixture = nodemixture.mixture(
-        box, lobes, start, axes, start.theta_r, angle, allowed, lambda share: report("fitting shares", share)
+        box,
+        lobes,
+        start,
+        axes,
+        start.theta_r,
+        angle,
+        allowed,
+        size,
+        last,
+        lambda share: report("fitting shares", share),
     )
     model = BakedModel(name, tuple(lobes), mixture, {}, box.parameters)
+    while (taken := stored(model)) > size and ease < MOST_EASE:
+        ease = min(max(2 * ease, ease * (taken / size) ** 2), MOST_EASE)
+        report(f"baking, {taken / 1024:.0f} KB", 0.0)
+        smaller = nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance, ease)
+        model = replace(model, lobes=tuple(smaller))
     report("measuring", 0.0)
     measured = losses.measured(box, model, random, lambda share: report("measuring", share))
     lost = losses.lost(box, model, random)
     if not np.isfinite(measured.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
-    return FittedBox(box, model, counts, allowed, reach, measured, lost)
+    return FittedBox(box, model, counts, allowed, reach, measured, lost, stored(model) > size)

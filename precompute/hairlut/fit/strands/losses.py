@@ -13,9 +13,9 @@ from ...lobes import Array
 from ...model import BakedModel
 from .. import cells, promise
 from .box import Box
+from .firstround import pairs
 
 OFFSETS = 4
-PAIRS = 48  # places at which an axis' part of the loss is measured
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def measured(
 def lost(box: Box, model: BakedModel, random: np.random.Generator) -> dict[str, float]:
     """V that blending between an axis' nodes costs, by axis: the mean of V at random places, less the mean
     where each is moved to the axis' nearest node. A parameter has that of the worst of its axes."""
-    parameters, theta_r, offset = _places(box, PAIRS, random)
+    parameters, theta_r, offset = _places(box, pairs(box.effort), random)
     base = _at(box, model, parameters, theta_r, offset, random)[0].mean()
     found: dict[str, float] = {}
     names = [p.name for p in box.parameters]

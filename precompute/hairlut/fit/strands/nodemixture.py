@@ -12,8 +12,9 @@ by the convexity of (p - q)^2 / q, and to second order in d_k."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
+from time import perf_counter
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from ...lobes import Array
 from ...mixture import Mixture, wrap
 from ...model import BakedLobe
 from .. import cells
-from ..lobesfit import Row, same_shapes
+from ..lobesfit import MENDED, SAME_SWEEPS, Row, improved, same_shapes
 from ..turning import TWO_PI
 from . import nodes, nodetables
 from .box import Box, Place, with_value
@@ -33,14 +34,18 @@ FEW_OFFSETS = 13  # by which dependences are found
 VIEWERS = np.array([-0.96, -0.7, -0.35, 0.0, 0.35, 0.7, 0.96])  # parts of the largest theta_r
 GRAZING = np.array([15.0, 1.0, 1.0, 1.0, 1.0, 1.0, 15.0])
 """How many times as much may be lost there: few viewers are grazing."""
+BETWEEN = 1 / 16  # of the loss at twice the distance of offsets: it falls with the fourth power
+SURE = 0.01  # V that blending between offsets may add before another start is tried
 UNSURE = 1.5  # times V with the best shares, at which others count as worse
 WORST = 3.0  # times the mean that may be lost at one theta_r
-BYTES, THINNED = 500_000, 3  # of the mixture, about, and how much smaller fewer theta_r and offsets make it
+SIZE_PART, THINNED = 0.5, 3
+"""Of the textures' size that the mixture may take, about, and how much smaller fewer theta_r and offsets make
+it."""
 MOST_DOUBLINGS = 6  # of what nodes may cost, for a mixture of this size
 
 
 @dataclass(frozen=True)
-class Lit:
+class Mixed:
     """Shares and turns (J, N, K) at one place; variance (J,): V, the mean over the offsets."""
 
     share: Array
@@ -54,19 +59,24 @@ class Fitting:
     def __init__(self, box: Box, lobes: list[BakedLobe], theta_r: Array, angle: Array, turning: bool):
         self._box, self._lobes, self._theta_r, self._angle = box, lobes, theta_r, angle
         self._turning = turning
-        self._known: dict[Place, Lit] = {}
+        self._known: dict[Place, Mixed] = {}
 
-    def at(self, place: Place, start: Lit) -> Lit:
+    @property
+    def count(self) -> int:
+        """Of places that were fitted."""
+        return len(self._known)
+
+    def at(self, place: Place, start: Mixed) -> Mixed:
         """The shares and turns at a place, from those of a place beside."""
         if place not in self._known:
             self._known[place] = self._fitted(place, start, False)
         return self._known[place]
 
-    def fixed(self, place: Place, start: Lit) -> Lit:
+    def fixed(self, place: Place, start: Mixed) -> Mixed:
         """V at a place with given shares and turns."""
         return self._fitted(place, start, True)
 
-    def _fitted(self, place: Place, start: Lit, fixed: bool) -> Lit:
+    def _fitted(self, place: Place, start: Mixed, fixed: bool) -> Mixed:
         box, offset = self._box, np.sin(self._angle)
         density, named = box.density_at(place), box.named(place)
         some = offset[np.unique([0, len(offset) // 2, max(len(offset) - 2, 0)])]
@@ -74,29 +84,52 @@ class Fitting:
         viewers = self._theta_r[np.unique([0, len(self._theta_r) // 2, len(self._theta_r) - 1])]
         m = min(cells.phi_count(density, viewers, offset[:-1][::6]), MOST_PHI, box.effort.most_phi)
         lobes = [BakedLobe(x.name, x.theta.at(named), x.phi and x.phi.at(named)) for x in self._lobes]
-        rows = []
-        variance = []
-        for j, theta_r in enumerate(self._theta_r):
+        rows: dict[int, Row] = {}
+        variance = np.zeros(len(self._theta_r))
+        for j in sorted(range(len(variance)), key=lambda j: abs(j - len(variance) // 2)):
+            theta_r, before = self._theta_r[j], rows.get(j - int(np.sign(j - len(variance) // 2)))
             mass = cells.of_density(density, self._theta_r[[j]], offset, edges[[j]], m).mass[0]
             parts = [nodetables.masses(x, theta_r, edges[j], m) for x in lobes]
             theta, phi = np.stack([a for a, _ in parts], axis=1), np.stack([b for _, b in parts])
             row = Row(theta, phi, start.share[j], start.turn[j])
             if not fixed:
-                row = same_shapes(row, mass, self._angle, self._turning)
-            rows.append(row)
-            variance.append(row.variance(mass))
-        return Lit(
-            np.stack([row.share for row in rows]), np.stack([row.turn for row in rows]), np.array(variance)
+                row = self._steadier(same_shapes(row, mass, self._angle, self._turning), before, mass)
+            rows[j], variance[j] = row, row.variance(mass)
+        return Mixed(
+            np.stack([rows[j].share for j in range(len(rows))]),
+            np.stack([rows[j].turn for j in range(len(rows))]),
+            variance,
         )
 
+    def _steadier(self, row: Row, before: Row | None, mass: Array) -> Row:
+        """The row, or one with the shares and turns of the row before it, nearer to the middle, as a start,
+        if that is better between offsets too: at grazing theta_r all inclinations look alike, and at some
+        offsets lobes may have changed places."""
+        if before is None or not self._turning or len(self._angle) < 3:
+            return row
+        start = replace(row, share=before.share, turn=before.turn)
+        if _unsteady(row, mass, self._angle) < UNSURE * row.variance(mass) + SURE:
+            return row
+        other = improved(start, mass, self._angle, SAME_SWEEPS, True, start, shapes=False, largest=MENDED)
+        return min(row, other, key=lambda one: _unsteady(one, mass, self._angle))
 
-def of_shapes(found: Shapes, theta_r: Array, angle: Array) -> Lit:
+
+def _unsteady(row: Row, mass: Array, angle: Array) -> float:
+    """V at the offsets, and about what blending between them adds: of every other offset, without its own."""
+    t = ((angle[1:-1] - angle[:-2]) / (angle[2:] - angle[:-2]))[:, None]
+    share = (1 - t) * row.share[:-2] + t * row.share[2:]
+    turn = row.turn[:-2] + t * wrap(row.turn[2:] - row.turn[:-2])
+    between = Row(row.theta, row.phi, share.astype(row.share.dtype), turn.astype(row.turn.dtype))
+    return row.variance(mass) + BETWEEN * between.variance(mass[1:-1])
+
+
+def of_shapes(found: Shapes, theta_r: Array, angle: Array) -> Mixed:
     """The shares and turns of the shapes' first place at other theta_r and offsets."""
     rows = found.rows[: len(found.theta_r)]
     parts = []
     for values in (np.stack([r.share for r in rows]), np.unwrap(np.stack([r.turn for r in rows]), axis=0)):
         parts.append(_along(found.theta_r, _along(found.angle, values, angle, 1), theta_r, 0))
-    return Lit(*parts, np.zeros(len(theta_r)))
+    return Mixed(*parts, np.zeros(len(theta_r)))
 
 
 def _along(nodes_at: Array, values: Array, at: Array, axis: int) -> Array:
@@ -120,7 +153,7 @@ def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tu
     for p in range(len(box.parameters)):
         values = box.steps(p, 5, anchor[p])
 
-        def beside(one: Lit, value: float, p=p) -> Lit:
+        def beside(one: Mixed, value: float, p=p) -> Mixed:
             return fitting.at(with_value(anchor, p, value), one)
 
         along = nodes.outwards(values, anchor[p], first, beside)
@@ -140,11 +173,15 @@ def mixture(
     theta_r: Array,
     angle: Array,
     allowed: Mapping[str, float],
+    size: float,
+    last: float,
     report: Callable[[float], None],
 ) -> Mixture:
-    """The mixture of baked lobes over the parameters axes."""
+    """The mixture of baked lobes over the parameters axes, with as many nodes as size, bytes of all textures,
+    and last, the time by perf_counter when it should be done, allow."""
     anchor = start.places[0]
     fitting = Fitting(box, lobes, theta_r, angle, start.turning)
+    began = perf_counter()
     first = fitting.at(anchor, of_shapes(start, theta_r, angle))
     bend, kept = _bends(lobes), {}
     for doublings in range(MOST_DOUBLINGS):
@@ -153,12 +190,13 @@ def mixture(
             most = allowed[box.parameters[p].name] * 2**doublings
             kept[p] = _nodes_along(box, fitting, first, anchor, p, bend, most)
         count = np.prod([len(kept[p][0]) for p in axes])
-        size = 8 * len(lobes) * count * len(theta_r) * len(angle) / THINNED
-        if size <= BYTES and count <= box.effort.nodes:
+        taken = 8 * len(lobes) * count * len(theta_r) * len(angle) / THINNED
+        late = perf_counter() + count * (perf_counter() - began) / fitting.count > last
+        if taken <= SIZE_PART * size and count <= box.effort.nodes and not late:
             break
     values = [kept[p][0] for p in axes]
     at_anchor = tuple(nodes.place_of(v, anchor[p]) for p, v in zip(axes, values, strict=True))
-    done: dict[tuple[int, ...], Lit] = {}
+    done: dict[tuple[int, ...], Mixed] = {}
     order = nodes.from_place(at_anchor, tuple(len(v) for v in values))
     for number, index in enumerate(order):
         report(0.3 + 0.7 * number / len(order))
@@ -171,11 +209,11 @@ def mixture(
 
 
 def _nodes_along(
-    box: Box, fitting: Fitting, first: Lit, anchor: Place, p: int, bend: Array, allowed: float
-) -> tuple[Array, list[Lit]]:
+    box: Box, fitting: Fitting, first: Mixed, anchor: Place, p: int, bend: Array, allowed: float
+) -> tuple[Array, list[Mixed]]:
     """The nodes of one parameter, the anchor's value among them, and what is there."""
 
-    def beside(one: Lit, value: float) -> Lit:
+    def beside(one: Mixed, value: float) -> Mixed:
         return fitting.at(with_value(anchor, p, value), one)
 
     values = box.steps(p, box.effort.steps, anchor[p])
@@ -188,7 +226,7 @@ def _nodes_along(
 class _Loss:
     """loss(i, j): the bound of V between two values of a parameter."""
 
-    def __init__(self, values: Array, along: list[Lit], bend: Array):
+    def __init__(self, values: Array, along: list[Mixed], bend: Array):
         self._values, self._along, self._bend = values, along, bend
 
     def __call__(self, i: int, j: int) -> float:
@@ -205,7 +243,7 @@ def _of_viewers(lost: Array) -> float:
     return float(max(lost.mean(), lost.max() / WORST))
 
 
-def _bound(low: Lit, high: Lit, t: Array | float, here: Lit, bend: Array) -> Array:
+def _bound(low: Mixed, high: Mixed, t: Array | float, here: Mixed, bend: Array) -> Array:
     share = (1 - t) * low.share + t * high.share
     turn = low.turn + t * wrap(high.turn - low.turn)
     return bound(here.share, here.turn, share, turn, bend)
@@ -241,7 +279,7 @@ def _assembled(
     lobes: list[BakedLobe],
     axes: tuple[int, ...],
     values: list[Array],
-    done: dict[tuple[int, ...], Lit],
+    done: dict[tuple[int, ...], Mixed],
     theta_r: Array,
     angle: Array,
     allowed: Mapping[str, float],

@@ -23,7 +23,7 @@ from .dependence import Dependence
 from .shapes import BOTH, THETA, Shapes
 
 WIDTH, WARP = 64, Warp("octaves", 2.0**-11)  # of the tables by which nodes are chosen
-BYTES, USUAL_WIDTH = 700_000, 24  # of all tables, about
+SIZE_PART, USUAL_WIDTH = 0.7, 24  # of the textures' size that tables may take, and their width, about
 MOST_DOUBLINGS = 6  # of what nodes may cost, for tables of this size
 ENOUGH_JOINED = 2  # places by which the shapes of all rows are fitted
 
@@ -53,14 +53,20 @@ def exact_phi(found: Shapes, lobe: int, theta_r: Array) -> smooth.SmoothRows:
 
 
 def chosen(
-    box: Box, found: Dependence, rows: int, allowed: Mapping[str, float], report: Callable[[float], None]
+    box: Box,
+    found: Dependence,
+    rows: int,
+    allowed: Mapping[str, float],
+    size: float,
+    report: Callable[[float], None],
 ) -> dict[int, tuple[Array, list[Shapes]]]:
     """The nodes of each parameter on which shapes depend, with the shapes there. allowed: V that blending
-    between the nodes of a parameter may cost; more of it where the tables would be too large otherwise."""
+    between the nodes of a parameter may cost; more of it where the tables would be too large otherwise.
+    size: bytes of all textures."""
     result: dict[int, tuple[Array, list[Shapes]]] = {}
     for doublings in range(MOST_DOUBLINGS):
         result = _chosen(box, found, {name: v * 2**doublings for name, v in allowed.items()}, report)
-        if _bytes(found, result, rows) <= BYTES:
+        if _bytes(found, result, rows) <= SIZE_PART * size:
             break
     return result
 

@@ -33,18 +33,20 @@ class _Node:
     need: Need
 
 
-def lobes(box: Box, name: str, theta: NodeShapes, phi: NodeShapes, loss: float) -> list[BakedLobe]:
-    """The lobes of a model, each table losing at most `loss` of V at its nodes."""
+def lobes(
+    box: Box, name: str, theta: NodeShapes, phi: NodeShapes, loss: float, ease: float
+) -> list[BakedLobe]:
+    """The lobes of a model, each table losing at most `loss` of V at its nodes, times ease."""
     first = next(iter(theta.at.values()))
     baked = []
     for k in range(first.rows[0].phi.shape[0]):
         lobe = f"lobe{k}"
         inclinations = {
-            index: _Node(exact_theta(one, k), Need(one.light[:, k], one.bright[:, k], loss))
+            index: _Node(exact_theta(one, k), Need(one.light[:, k], one.bright[:, k], loss).eased(ease))
             for index, one in theta.at.items()
         }
         azimuths = {
-            index: _Node(exact_phi(one, k, first.theta_r), _need_of_phi(one, k, loss))
+            index: _Node(exact_phi(one, k, first.theta_r), _need_of_phi(one, k, loss).eased(ease))
             for index, one in phi.at.items()
         }
         uniform = all(_uniform(one.phi[:, k], azimuths[index].need) for index, one in phi.at.items())

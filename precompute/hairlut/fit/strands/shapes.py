@@ -234,13 +234,22 @@ def _blocks(
     box: Box, places: tuple[Place, ...], theta_r: Array, angle: Array, edges: Array, tied_rows: bool
 ) -> list[Block]:
     offset = np.sin(angle)
-    viewers = theta_r[np.unique([0, len(theta_r) // 2, len(theta_r) - 1])]
-    m = max(cells.phi_count(box.density_at(place), viewers, offset[:-1][::2]) for place in places)
-    m = min(m, box.effort.most_phi)
-    each = [cells.of_density(box.density_at(place), theta_r, offset, edges, m) for place in places]
+    m = max(_phi_count(box, place, theta_r, offset) for place in places)
+    each = [box.cells_at(place, theta_r, offset, edges, m) for place in places]
     for place, data in zip(places, each, strict=True):
         _check_light(box, place, data)
     return [Block(mass, j, 0 if tied_rows else j) for data in each for j, mass in enumerate(data.mass)]
+
+
+def _phi_count(box: Box, place: Place, theta_r: Array, offset: Array) -> int:
+    """Cells of the azimuth at a place; all that there may be where even the middle needs these."""
+    viewers = theta_r[np.unique([len(theta_r) // 2, 0, len(theta_r) - 1])]
+    some, density, most = offset[:-1][::2] if len(offset) > 1 else offset, box.density_at(place), 0
+    for at in (viewers[1:2], viewers[::2]):
+        most = max(most, cells.phi_count(density, at, some))
+        if most >= box.effort.most_phi or not box.effort.edges_of_phi:
+            break
+    return min(most, box.effort.most_phi)
 
 
 def _check_light(box: Box, place: Place, data: cells.Cells) -> None:

@@ -69,6 +69,7 @@ static inline real blend_turns(real a, real b, real t)
 /* Four lobes at the four nodes; turns only where lobes are turned. */
 typedef struct vector_fours {
     real share[4][4], turn[4][4];
+    whole fixed[4][4]; /* turns as they are stored */
 } vector_fours;
 
 static inline void gather_turns(const hairlut_four *four, const int *at, whole turn[4])
@@ -83,13 +84,12 @@ static inline void gather_turns(const hairlut_four *four, const int *at, whole t
 static inline void read_fours(const hairlut_mixture *m, const grid_nodes *c, const hairlut_four *four, vector_fours *read)
 {
     for (int n = 0; n < 4; ++n) {
-        whole turn[4];
         gather4(four->share, c->at[n], read->share[n]);
         if (!m->turned)
             continue;
-        gather_turns(four, c->at[n], turn);
+        gather_turns(four, c->at[n], read->fixed[n]);
         for (int l = 0; l < 4; ++l)
-            read->turn[n][l] = converted(turn[l]);
+            read->turn[n][l] = converted(read->fixed[n][l]);
     }
 }
 
@@ -100,16 +100,15 @@ static inline void add_corner(const hairlut_model *model, const grid_nodes *c, c
     const hairlut_four *here = four + model->strands->mixture.corner[k];
     for (int n = 0; n < 4; ++n) {
         real share[4];
-        whole first[4], turn[4];
+        whole turn[4];
         gather4(here->share, c->at[n], share);
         for (int l = 0; l < 4; ++l)
             sum->share[n][l] = add(sum->share[n][l], mul(weight, share[l]));
         if (!model->mixture.turns_vary)
             continue;
-        gather_turns(four, c->at[n], first);
         gather_turns(here, c->at[n], turn);
         for (int l = 0; l < 4; ++l)
-            sum->turn[n][l] = add(sum->turn[n][l], mul(weight, converted(isub(turn[l], first[l]))));
+            sum->turn[n][l] = add(sum->turn[n][l], mul(weight, converted(isub(turn[l], sum->fixed[n][l]))));
     }
 }
 

@@ -27,6 +27,7 @@ from hairlut.fixed import fixed
 from hairlut.model import BakedModel
 from report.engine import lack_of_llvm
 from report.hairscene import chiang
+from report.hairscene.perception import colour_difference
 from report.markdown import table
 from report.own_hair import example
 from report.places import PAGES, ROOT
@@ -187,6 +188,16 @@ def deviations(rows: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
+def differences(rows: Mapping[str, Any]) -> dict[str, float]:
+    """Mean CIE 2000 difference of each first batch from the reference's mean picture, where there is hair."""
+    truth = rows[REFERENCE].image
+    hair = truth.max(axis=-1) > 0
+    return {
+        kind: float(colour_difference(one.first, truth, example().EXPOSURE)[hair].mean())
+        for kind, one in rows.items()
+    }
+
+
 def limit(comparisons: int) -> float:
     """Standard errors beyond which one of so many is off, with the probability ALPHA where none is."""
     return float(norm.isf((1 - (1 - ALPHA) ** (1 / comparisons)) / 2))
@@ -201,15 +212,18 @@ def table_of(lights: Mapping[str, Mapping[str, Any]]) -> str:
         "time",
         "mean luminance",
         "standard errors off",
+        "colour difference",
     ]
     lines = []
     for light, rows in lights.items():
-        best, off = rows[REFERENCE], deviations(rows)
+        best, off, seen = rows[REFERENCE], deviations(rows), differences(rows)
         for kind, one in rows.items():
             figures = one.variance, one.variance / best.variance, one.seconds / best.seconds
             mean = f"{one.mean:.4g} +- {one.mean * one.error:.2g}"
             beside = f"{off[kind]:+.1f}" if kind in off else ""
-            lines.append([light, kind, *(f"{figure:.3g}" for figure in figures), mean, beside])
+            lines.append(
+                [light, kind, *(f"{figure:.3g}" for figure in figures), mean, beside, f"{seen[kind]:.1f}"]
+            )
     return table(header, lines)
 
 
@@ -260,6 +274,7 @@ def main() -> int:
         groups=GROUPS,
         samples=BATCHES * SAMPLES,
         reference=4 * BATCHES * SAMPLES,
+        first=SAMPLES,
     )
     made = picture(lights[LIGHTS[0]], arguments.out / "strands.png")
     print(write_whole(arguments.out / "strands.md", text.encode()), made, sep="\n")

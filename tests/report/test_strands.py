@@ -11,6 +11,7 @@ from hairlut.mixture import Mixture
 from hairlut.model import BakedLobe, BakedModel
 from hairlut.table import Table
 from report.engine import lack_of_llvm
+from report.hairscene.perception import colour_difference
 
 LIGHT = "even sky"
 SIZE, BATCHES, LOCK = (24, 32), 16, 500
@@ -62,6 +63,15 @@ def render(strands):
 @pytest.fixture(scope="module")
 def rendered(strands):
     return render(strands)
+
+
+def test_noise_is_seen_as_a_difference_of_colour(strands, rendered):
+    """Lightness alone, as the hair has one channel; uniform directions make the noisiest picture."""
+    module, _ = strands
+    seen = module.differences(rendered)
+    assert 0 < seen[module.REFERENCE] < seen[module.SPHERE]
+    assert 0 < seen[module.ONE_MODEL] < seen[module.SPHERE]
+    assert colour_difference(rendered[module.SPHERE].image, rendered[module.SPHERE].image, 1.0).max() == 0
 
 
 def test_all_pictures_have_one_mean(strands, rendered):

@@ -124,7 +124,34 @@ static inline void halve_blocks(const hairlut_axis *axis, size_t n, axis_searche
     }
 }
 
-/* From the last counts to where to read the cells: hairlut_axis_find */
+/* The widths h of the columns of a half of a small table, scaled, as whole vectors. */
+typedef struct column_widths {
+    float h[HAIRLUT_WHOLE(HAIRLUT_HALF(HAIRLUT_SMALL_COLUMNS), LANES)];
+    int vectors;
+} column_widths;
+
+static inline void read_widths(const hairlut_axis *axis, column_widths *widths)
+{
+    const int half = HAIRLUT_HALF(axis->columns);
+    widths->vectors = (half + LANES - 1) / LANES;
+    for (int i = 0; i < widths->vectors * LANES; ++i)
+        widths->h[i] = axis->knots[HAIRLUT_KNOT * (i < half ? i : 0) + 2];
+}
+
+/* From the last counts to where to read the cells of a small table: what its links say, without a load for each sample */
+HAIRLUT_INLINE void find_small_cells(const hairlut_axis *axis, size_t n, axis_searches *q, const int *counts)
+{
+    column_widths widths;
+    read_widths(axis, &widths);
+    for (size_t s = 0; s < n; s += LANES) {
+        const whole cell = iadd(iload(q->cell + s), iload(counts + s)), mirrored = isub(iall(axis->columns - 2), cell);
+        const whole i = ismaller(cell, mirrored);
+        istore(q->at + s, cell_offset(axis, iload(q->j + s), i, igreater(cell, mirrored)));
+        store(q->width + s, lookup(widths.h, widths.vectors, i));
+    }
+}
+
+/* The same of any table: hairlut_axis_find */
 HAIRLUT_INLINE void find_cells(const hairlut_axis *axis, size_t n, axis_searches *q, const int *counts)
 {
     for (size_t s = 0; s < n; s += LANES) {
@@ -145,7 +172,10 @@ HAIRLUT_INLINE void search(const hairlut_axis *axis, size_t n, axis_searches *q,
     enter_blocks(axis, n, q, size);
     halve_blocks(axis, n, q);
     count(axis, axis->rows + HAIRLUT_LINE, n, q, size, alike, counts);
-    find_cells(axis, n, q, counts);
+    if (size == HAIRLUT_SMALL_GROUP)
+        find_small_cells(axis, n, q, counts);
+    else
+        find_cells(axis, n, q, counts);
 }
 
 /* hairlut_axis_blend, of cells of the row below and of that above; t is that of hairlut_row */

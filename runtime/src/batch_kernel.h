@@ -16,6 +16,7 @@
  *                   after from_the_front(lanes) lane l of them has what stood as far from the front as there are before it
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two
  *   gather4(p, at, x)  lane l of x[k] = p[at[l] + k], at[l] a multiple of 4
+ *   lookup(table, vectors, i)  lane l has table[i[l]]; the table has whole vectors
  *   gather_links(links, at, offset, h)  those of links[at[l]] in lane l
  *   HAIRLUT_COUNTS(groups, above, at, t, x, n, alike)  may be defined: lane l has the count of groups and above + at[l], t[l], x[l]
  *

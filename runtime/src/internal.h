@@ -24,7 +24,8 @@ enum { HAIRLUT_GROUP = 16, HAIRLUT_SMALL_GROUP = HAIRLUT_GROUP / 2, HAIRLUT_LINE
 #define HAIRLUT_WHOLE(n, size) (((n) + (size) - 1) / (size) * (size))
 /* Small: 9 blocks of 8 have all cells. Else a block is the least power of two, from 16 on, of which 17 blocks have them; a side
  * is at most 4096. */
-#define HAIRLUT_IS_SMALL(columns) ((columns) - 1 <= (HAIRLUT_SMALL_GROUP + 1) * HAIRLUT_SMALL_GROUP)
+#define HAIRLUT_SMALL_COLUMNS ((HAIRLUT_SMALL_GROUP + 1) * HAIRLUT_SMALL_GROUP + 1) /* at most */
+#define HAIRLUT_IS_SMALL(columns) ((columns) <= HAIRLUT_SMALL_COLUMNS)
 #define HAIRLUT_FITS(columns, step) ((columns) - 1 <= (HAIRLUT_GROUP + 1) * (step))
 #define HAIRLUT_STEP(columns)                           \
     (HAIRLUT_IS_SMALL(columns)    ? HAIRLUT_SMALL_GROUP \

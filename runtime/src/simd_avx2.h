@@ -114,41 +114,52 @@ HAIRLUT_INLINE permutation from_the_front(int lanes) { return unpacked(hairlut_f
 HAIRLUT_INLINE real permuted(real a, permutation p) { return _mm256_permutevar8x32_ps(a, p); }
 /* clang-format on */
 
+HAIRLUT_INLINE real lookup(const float *table, int vectors, whole i)
+{
+    real found = permuted(load(table), i);
+    for (int v = 1; v < vectors; ++v)
+        found = choose(igreater(i, iall(v * LANES - 1)), permuted(load(table + v * LANES), i), found);
+    return found;
+}
+
 /* -1 in the lanes of the eight blended texels that are at most x */
 HAIRLUT_INLINE whole at_most(real from, real change, real t, real x)
 {
     return _mm256_castps_si256(_mm256_cmp_ps(add(from, mul(t, change)), x, _CMP_LE_OQ));
 }
 
-HAIRLUT_INLINE whole tally(const float *group, const float *above, float t, float x, int n, int alike)
+HAIRLUT_INLINE whole tally(const float *group, const float *above, real t, real x, int n, int alike)
 {
     const real from = load(group);
     if (alike)
-        return _mm256_castps_si256(_mm256_cmp_ps(from, all(x), _CMP_LE_OQ));
+        return _mm256_castps_si256(_mm256_cmp_ps(from, x, _CMP_LE_OQ));
     const real to = load(above);
     if (n == HAIRLUT_SMALL_GROUP)
-        return at_most(from, to, all(t), all(x));
+        return at_most(from, to, t, x);
     const real from8 = load(group + 8), to8 = load(above + 8);
-    return iadd(at_most(from, sub(to, from), all(t), all(x)), at_most(from8, sub(to8, from8), all(t), all(x)));
+    return iadd(at_most(from, sub(to, from), t, x), at_most(from8, sub(to8, from8), t, x));
 }
 
-/* The tallies of samples 0 and 1, as 16-bit integers: those of sample 0 are in the first half of both halves of a vector. */
-HAIRLUT_INLINE whole pair(const float *groups, const float *above, const int *at, const float *t, const float *x, int n,
-                          int alike)
+/* The tallies of samples 0 to 3, as bytes: those of sample k are number k of the four fours in both halves of a vector. Weights are
+ * spread by shuffles, angles by loads, which are what a count has most of. */
+HAIRLUT_INLINE whole four_tallies(const float *groups, const float *above, const int *at, const float *t, const float *x,
+                                  int n, int alike)
 {
-    return _mm256_packs_epi32(tally(groups + at[0], above + at[0], t[0], x[0], n, alike),
-                              tally(groups + at[1], above + at[1], t[1], x[1], n, alike));
+    const real t4 = _mm256_broadcast_ps((const __m128 *)(const void *)t);
+    const whole k0 = tally(groups + at[0], above + at[0], _mm256_permute_ps(t4, 0x00), all(x[0]), n, alike);
+    const whole k1 = tally(groups + at[1], above + at[1], _mm256_permute_ps(t4, 0x55), all(x[1]), n, alike);
+    const whole k2 = tally(groups + at[2], above + at[2], _mm256_permute_ps(t4, 0xaa), all(x[2]), n, alike);
+    const whole k3 = tally(groups + at[3], above + at[3], _mm256_permute_ps(t4, 0xff), all(x[3]), n, alike);
+    return _mm256_packs_epi16(_mm256_packs_epi32(k0, k1), _mm256_packs_epi32(k2, k3));
 }
 
-/* Eight tallies become bytes, four for each sample in both halves of a vector, whose sum is turned positive. */
+/* Both halves are added, and the sum of each four turned positive. */
 #define HAIRLUT_COUNTS counts_at_most
 HAIRLUT_INLINE whole counts_at_most(const float *groups, const float *above, const int *at, const float *t, const float *x,
                                     int n, int alike)
 {
-    const whole p0 = pair(groups, above, at, t, x, n, alike), p2 = pair(groups, above, at + 2, t + 2, x + 2, n, alike);
-    const whole p4 = pair(groups, above, at + 4, t + 4, x + 4, n, alike),
-                p6 = pair(groups, above, at + 6, t + 6, x + 6, n, alike);
-    const whole a = _mm256_packs_epi16(p0, p2), b = _mm256_packs_epi16(p4, p6);
+    const whole a = four_tallies(groups, above, at, t, x, n, alike),
+                b = four_tallies(groups, above, at + 4, t + 4, x + 4, n, alike);
     const whole bytes = _mm256_add_epi8(_mm256_permute2x128_si256(a, b, 0x20), _mm256_permute2x128_si256(a, b, 0x31));
     return _mm256_madd_epi16(_mm256_maddubs_epi16(_mm256_set1_epi8(1), bytes), _mm256_set1_epi16(-1));
 }

@@ -114,4 +114,12 @@ HAIRLUT_INLINE real permuted(real a, permutation p)
     return vreinterpretq_f32_u8(vqtbl1q_u8(vreinterpretq_u8_f32(a), p));
 }
 
+HAIRLUT_INLINE real lookup(const float *table, int vectors, whole i)
+{
+    const float found[4] = {table[vgetq_lane_s32(i, 0)], table[vgetq_lane_s32(i, 1)], table[vgetq_lane_s32(i, 2)],
+                            table[vgetq_lane_s32(i, 3)]};
+    (void)vectors;
+    return load(found);
+}
+
 #endif

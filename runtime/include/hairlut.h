@@ -338,7 +338,7 @@ HAIRLUT_API void hairlut_direction(const hairlut_frame *frame, float theta, floa
 
 /* As the functions above for i in [0,n). Every pointer addresses n floats of any alignment (64 bytes is fastest); n may be 0.
  * An output may be the same array as an input (in place, from the same first element), never overlap one otherwise. Results
- * equal those of the one-direction forms bit for bit, whichever kernel runs: portable C, AVX2 or NEON,
+ * equal those of the one-direction forms bit for bit, whichever kernel runs: portable C, AVX2, AVX-512 or NEON,
  * chosen at run time.
  *
  * shares: NULL for the model's own, or lobe_count * n floats, those of lobe k from k * n on. offset: NULL for 0. */

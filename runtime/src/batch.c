@@ -9,8 +9,10 @@ const hairlut_batch *hairlut_batch_level(int level)
     if (level == 0)
         return &hairlut_batch_portable;
 #ifdef HAIRLUT_BATCH_X86
-    if (level == 1 && hairlut_this_cpu() == HAIRLUT_CPU_AVX2)
+    if (level == 1 && hairlut_this_cpu() >= HAIRLUT_CPU_AVX2)
         return &hairlut_batch_avx2;
+    if (level == 2 && hairlut_this_cpu() >= HAIRLUT_CPU_AVX512)
+        return &hairlut_batch_avx512;
 #endif
 #ifdef HAIRLUT_BATCH_NEON
     if (level == 1)

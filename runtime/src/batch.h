@@ -80,16 +80,17 @@ static inline const float *hairlut_gather(const float *values, int count, size_t
 extern const hairlut_batch hairlut_batch_portable;
 #ifdef HAIRLUT_BATCH_X86
 extern const hairlut_batch hairlut_batch_avx2;
+extern const hairlut_batch hairlut_batch_avx512; /* arrays only */
 #endif
 #ifdef HAIRLUT_BATCH_NEON
 extern const hairlut_batch hairlut_batch_neon;
 #endif
 
-/* The widest set that this processor runs: what the functions of hairlut.h call. */
+/* The set whose functions for one direction those of hairlut.h call. */
 static inline const hairlut_batch *hairlut_best_kernels(void)
 {
 #if defined(HAIRLUT_BATCH_X86)
-    return hairlut_this_cpu() == HAIRLUT_CPU_AVX2 ? &hairlut_batch_avx2 : &hairlut_batch_portable;
+    return hairlut_this_cpu() >= HAIRLUT_CPU_AVX2 ? &hairlut_batch_avx2 : &hairlut_batch_portable;
 #elif defined(HAIRLUT_BATCH_NEON)
     return &hairlut_batch_neon;
 #else

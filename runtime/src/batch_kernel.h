@@ -12,6 +12,7 @@
  *   iwhere(m, a)    a in the lanes that are true, 0 in the others
  *   as_whole(a)     the integers of the same bits
  *   lanes_of(m)     the lanes that are true, bit l for lane l
+ *   how_many(lanes) how many these are
  *   permuted(a, p)  a with its lanes in the order p: to_the_front(lanes) brings those to the front, without changing their order;
  *                   after from_the_front(lanes) lane l of them has what stood as far from the front as there are before it
  *   shifted(a)      the floats whose bits are those of a > 0 shifted right by two

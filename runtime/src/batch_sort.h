@@ -13,7 +13,7 @@ enum { VECTORS = BLOCK / LANES };
 typedef struct sorting {
     size_t first[HAIRLUT_MAX_LOBES + 1];
     int at[HAIRLUT_MAX_LOBES][VECTORS];
-    unsigned char lanes[HAIRLUT_MAX_LOBES][VECTORS];
+    unsigned short lanes[HAIRLUT_MAX_LOBES][VECTORS];
 } sorting;
 
 static inline void sort_by_lobe(int lobe_count, size_t n, const int *chosen, sorting *sorted)
@@ -23,9 +23,9 @@ static inline void sort_by_lobe(int lobe_count, size_t n, const int *chosen, sor
         sorted->first[k] = (size_t)count;
         for (size_t v = 0; v < n / LANES; ++v) {
             const int lanes = lanes_of(iequal(iload(chosen + v * LANES), iall(k)));
-            sorted->lanes[k][v] = (unsigned char)lanes;
+            sorted->lanes[k][v] = (unsigned short)lanes;
             sorted->at[k][v] = count;
-            count += hairlut_bits[lanes];
+            count += how_many(lanes);
         }
     }
     sorted->first[lobe_count] = (size_t)count;

@@ -8,7 +8,7 @@
 
 #include "platform.h"
 
-typedef enum hairlut_cpu { HAIRLUT_CPU_PLAIN, HAIRLUT_CPU_AVX2 } hairlut_cpu;
+typedef enum hairlut_cpu { HAIRLUT_CPU_PLAIN, HAIRLUT_CPU_AVX2, HAIRLUT_CPU_AVX512 } hairlut_cpu;
 
 /* A build for one known processor defines HAIRLUT_CPU as one of these: then the processor is not queried. */
 
@@ -53,18 +53,21 @@ static inline int hairlut_has_bits(uint32_t word, uint32_t bits)
     return (word & bits) == bits;
 }
 
-/* The kernels need AVX2, BMI2 and POPCNT. */
+/* The kernels need AVX2, BMI2 and POPCNT, the wider ones AVX512F, DQ, BW and VL besides. */
 static inline hairlut_cpu hairlut_ask_cpu(void)
 {
     enum { POPCNT = 1u << 23, OSXSAVE = 1u << 27, AVX = 1u << 28 }; /* leaf 1, ecx */
     enum { AVX2 = 1u << 5, BMI2 = 1u << 8 };                        /* leaf 7, ebx */
-    const uint32_t saves_ymm = 0x6;
+    const uint32_t avx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
+    const uint32_t saves_ymm = 0x6, saves_zmm = 0xe6; /* with the masks, and the upper halves and sixteen */
     if (hairlut_read_cpuid(0).a < 7)
         return HAIRLUT_CPU_PLAIN;
-    if (!hairlut_has_bits(hairlut_read_cpuid(1).c, POPCNT | OSXSAVE | AVX) ||
-        !hairlut_has_bits(hairlut_read_cpuid(7).b, AVX2 | BMI2))
+    const uint32_t wide = hairlut_read_cpuid(7).b;
+    if (!hairlut_has_bits(hairlut_read_cpuid(1).c, POPCNT | OSXSAVE | AVX) || !hairlut_has_bits(wide, AVX2 | BMI2) ||
+        !hairlut_has_bits(hairlut_saved_registers(), saves_ymm))
         return HAIRLUT_CPU_PLAIN;
-    return hairlut_has_bits(hairlut_saved_registers(), saves_ymm) ? HAIRLUT_CPU_AVX2 : HAIRLUT_CPU_PLAIN;
+    return hairlut_has_bits(wide, avx512) && hairlut_has_bits(hairlut_saved_registers(), saves_zmm) ? HAIRLUT_CPU_AVX512
+                                                                                                    : HAIRLUT_CPU_AVX2;
 }
 
 /* What hairlut_ask_cpu answered, kept: cpuid takes hundreds of cycles, in a virtual machine thousands. Whichever thread comes first,

@@ -3,9 +3,8 @@
 #ifndef HAIRLUT_SIMD_AVX2_H
 #define HAIRLUT_SIMD_AVX2_H
 
-#include <immintrin.h>
-
-#include "internal.h"
+#include "quad.h"
+#include "simd_eight.h"
 
 typedef __m256 real;
 typedef __m256i whole;
@@ -50,35 +49,17 @@ HAIRLUT_INLINE whole as_whole(real a) { return _mm256_castps_si256(a); }
 HAIRLUT_INLINE real converted(whole a) { return _mm256_cvtepi32_ps(a); }
 /* clang-format on */
 
-HAIRLUT_INLINE real quads(const float *p, const int *at)
-{
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + at[0])), _mm_loadu_ps(p + at[4]), 1);
-}
-
 HAIRLUT_INLINE void gather4(const float *p, const int *at, real x[4])
 {
-    const real r0 = quads(p, at), r1 = quads(p, at + 1), r2 = quads(p, at + 2), r3 = quads(p, at + 3);
-    const __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(r0, r1)), b = _mm256_castps_pd(_mm256_unpackhi_ps(r0, r1));
-    const __m256d c = _mm256_castps_pd(_mm256_unpacklo_ps(r2, r3)), d = _mm256_castps_pd(_mm256_unpackhi_ps(r2, r3));
-    x[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(a, c));
-    x[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(a, c));
-    x[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(b, d));
-    x[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(b, d));
-}
-
-HAIRLUT_INLINE __m128 two_links(const hairlut_link *links, const int *at)
-{
-    const __m128 low = _mm_castpd_ps(_mm_load_sd((const double *)(const void *)(links + at[0])));
-    return _mm_loadh_pi(low, (const __m64 *)(const void *)(links + at[1]));
+    gather_eight(p, at, x);
 }
 
 HAIRLUT_INLINE void gather_links(const hairlut_link *links, const int *at, whole *offset, real *h)
 {
-    const real a = _mm256_set_m128(two_links(links, at + 4), two_links(links, at));
-    const real b = _mm256_set_m128(two_links(links, at + 6), two_links(links, at + 2));
-    *offset = _mm256_castps_si256(_mm256_shuffle_ps(a, b, _MM_SHUFFLE(2, 0, 2, 0)));
-    *h = _mm256_shuffle_ps(a, b, _MM_SHUFFLE(3, 1, 3, 1));
+    gather_eight_links(links, at, offset, h);
 }
+
+#define HAIRLUT_COUNTS count_eight_groups
 
 /* Permutations of eight lanes, four bits a lane, for each set of lanes, bit l of m for lane l. To the front: from the last lane on,
  * each one of the set moves those behind it up. From the front: each moves those behind it on by one. */
@@ -108,6 +89,7 @@ HAIRLUT_INLINE permutation unpacked(unsigned lanes)
 }
 
 /* clang-format off */
+HAIRLUT_INLINE int how_many(int lanes) { return hairlut_bits[lanes]; }
 HAIRLUT_INLINE int lanes_of(mask m) { return _mm256_movemask_ps(m); }
 HAIRLUT_INLINE permutation to_the_front(int lanes) { return unpacked(hairlut_to_front[lanes]); }
 HAIRLUT_INLINE permutation from_the_front(int lanes) { return unpacked(hairlut_from_front[lanes]); }
@@ -120,48 +102,6 @@ HAIRLUT_INLINE real lookup(const float *table, int vectors, whole i)
     for (int v = 1; v < vectors; ++v)
         found = choose(igreater(i, iall(v * LANES - 1)), permuted(load(table + v * LANES), i), found);
     return found;
-}
-
-/* -1 in the lanes of the eight blended texels that are at most x */
-HAIRLUT_INLINE whole at_most(real from, real change, real t, real x)
-{
-    return _mm256_castps_si256(_mm256_cmp_ps(add(from, mul(t, change)), x, _CMP_LE_OQ));
-}
-
-HAIRLUT_INLINE whole tally(const float *group, const float *above, real t, real x, int n, int alike)
-{
-    const real from = load(group);
-    if (alike)
-        return _mm256_castps_si256(_mm256_cmp_ps(from, x, _CMP_LE_OQ));
-    const real to = load(above);
-    if (n == HAIRLUT_SMALL_GROUP)
-        return at_most(from, to, t, x);
-    const real from8 = load(group + 8), to8 = load(above + 8);
-    return iadd(at_most(from, sub(to, from), t, x), at_most(from8, sub(to8, from8), t, x));
-}
-
-/* The tallies of samples 0 to 3, as bytes: those of sample k are number k of the four fours in both halves of a vector. Weights are
- * spread by shuffles, angles by loads, which are what a count has most of. */
-HAIRLUT_INLINE whole four_tallies(const float *groups, const float *above, const int *at, const float *t, const float *x,
-                                  int n, int alike)
-{
-    const real t4 = _mm256_broadcast_ps((const __m128 *)(const void *)t);
-    const whole k0 = tally(groups + at[0], above + at[0], _mm256_permute_ps(t4, 0x00), all(x[0]), n, alike);
-    const whole k1 = tally(groups + at[1], above + at[1], _mm256_permute_ps(t4, 0x55), all(x[1]), n, alike);
-    const whole k2 = tally(groups + at[2], above + at[2], _mm256_permute_ps(t4, 0xaa), all(x[2]), n, alike);
-    const whole k3 = tally(groups + at[3], above + at[3], _mm256_permute_ps(t4, 0xff), all(x[3]), n, alike);
-    return _mm256_packs_epi16(_mm256_packs_epi32(k0, k1), _mm256_packs_epi32(k2, k3));
-}
-
-/* Both halves are added, and the sum of each four turned positive. */
-#define HAIRLUT_COUNTS counts_at_most
-HAIRLUT_INLINE whole counts_at_most(const float *groups, const float *above, const int *at, const float *t, const float *x,
-                                    int n, int alike)
-{
-    const whole a = four_tallies(groups, above, at, t, x, n, alike),
-                b = four_tallies(groups, above, at + 4, t + 4, x + 4, n, alike);
-    const whole bytes = _mm256_add_epi8(_mm256_permute2x128_si256(a, b, 0x20), _mm256_permute2x128_si256(a, b, 0x31));
-    return _mm256_madd_epi16(_mm256_maddubs_epi16(_mm256_set1_epi8(1), bytes), _mm256_set1_epi16(-1));
 }
 
 #endif

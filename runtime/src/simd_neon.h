@@ -6,6 +6,7 @@
 #include <arm_neon.h>
 
 #include "internal.h"
+#include "quad.h"
 
 typedef float32x4_t real;
 typedef int32x4_t whole;
@@ -106,6 +107,7 @@ HAIRLUT_INLINE int lanes_of(mask m)
 }
 
 /* clang-format off */
+HAIRLUT_INLINE int how_many(int lanes) { return hairlut_bits[lanes]; }
 HAIRLUT_INLINE permutation to_the_front(int lanes) { return vld1q_u8(hairlut_to_front[lanes]); }
 HAIRLUT_INLINE permutation from_the_front(int lanes) { return vld1q_u8(hairlut_from_front[lanes]); }
 /* clang-format on */

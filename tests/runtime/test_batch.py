@@ -66,6 +66,7 @@ def test_widest_set_of_this_processor_is_offered(reference):
     if "avx2" not in flags:
         pytest.skip("this processor has no AVX2: its kernels are not run")
     assert "avx2" in reference
+    assert ("avx512" in reference) == ({"avx512f", "avx512dq", "avx512bw", "avx512vl"} <= set(flags.split()))
 
 
 @pytest.mark.parametrize("flags", [["-O3"], ["-O2", "-DHAIRLUT_PLAIN_QUAD"], ["-O0"]], ids=" ".join)

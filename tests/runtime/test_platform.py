@@ -14,7 +14,9 @@ int main(void)
 {
     const int avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") &&
                      __builtin_cpu_supports("popcnt");
-    printf("%d %d\\n", (int)hairlut_this_cpu(), avx2);
+    const int avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+    printf("%d %d\\n", (int)hairlut_this_cpu(), avx2 + (avx2 && avx512));
     return hairlut_this_cpu() != hairlut_ask_cpu();
 }
 """

@@ -28,9 +28,14 @@ UNREACHED = [
     ("batch.c", "hairlut_this_cpu()", PROCESSOR),
     ("batch.h", "hairlut_this_cpu()", PROCESSOR),
     ("cpu.h", "hairlut_read_cpuid", PROCESSOR),
-    ("simd_avx2.h", "if (n == HAIRLUT_SMALL_GROUP)", CONSTANT),
-    ("batch_axis.h", "count(axis, axis->rows + HAIRLUT_LINE, n, q, size, counts);", NOT_EMPTY),
-    ("batch_axis.h", "static inline void search_", NOT_EMPTY),
+    ("cpu.h", "hairlut_saved_registers()", PROCESSOR),
+    ("cpu.h", ": HAIRLUT_CPU_AVX2;", PROCESSOR),
+    ("simd_eight.h", "if (n == HAIRLUT_SMALL_GROUP)", CONSTANT),
+    ("batch_axis.h", "for (size_t s = 0; s < n; s += LANES) {", NOT_EMPTY),
+    ("batch_axis.h", "count(axis, axis->rows, n, q, size, alike, q->cell);", CONSTANT),
+    ("batch_axis.h", "count(axis, axis->rows + HAIRLUT_LINE, n, q, size, alike, counts);", CONSTANT),
+    ("batch_axis.h", "if (size == HAIRLUT_SMALL_GROUP)", CONSTANT),
+    ("batch_axis.h", "if (alike)", CONSTANT),
     ("model.c", "SIZE_MAX / 4", "a size_t has 64 bits here: no model is larger"),
     ("strand_axis.h", "for (int c = 1; c < n; ++c)", CONSTANT),
     ("strand_axis.h", "small ? to : hairlut_quad_sub(to, from)", CONSTANT),
@@ -247,6 +252,8 @@ def test_every_branch_is_reached_or_listed_with_the_reason(good, directories, tm
     taken = counted_branches(folder)
     if not kernels & HERE_RUN.keys():  # a processor without AVX2 runs no line of them
         taken = {key: was for key, was in taken.items() if not re.match(r"(batch|simd)_\w+\.h", key[0])}
+    lacking = {f"simd_{name}.h" for name in HERE_RUN.keys() - kernels}
+    taken = {key: was for key, was in taken.items() if key[0] not in lacking}
     sources = {file: (RUNTIME / "src" / file).read_text().splitlines() for file, *_ in taken}
     missed = sorted({(file, line) for (file, line, *_), was in taken.items() if not was})
     report = [f"{sum(taken.values())} of {len(taken)} branches of {len(sources)} files of runtime/src"]

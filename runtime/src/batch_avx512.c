@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The kernels for arrays in AVX-512. Compiled with -mavx512f -mavx512dq -mavx512bw -mavx512vl -mpopcnt. Functions for one direction
+ * stay those of AVX2: they have no use for more than eight lanes. */
+#include "batch.h"
+
+#ifdef HAIRLUT_BATCH_X86
+#include "simd_avx512.h"
+
+#include "batch_kernel.h"
+
+const hairlut_batch hairlut_batch_avx512 = {.name = "avx512",
+                                            .sample_lobe = sample_lobe,
+                                            .pdf_lobe = pdf_lobe,
+                                            .sample_hair = sample_hair,
+                                            .pdf_hair = pdf_hair,
+                                            .sample_strand = sample_strand,
+                                            .pdf_strand = pdf_strand};
+#endif

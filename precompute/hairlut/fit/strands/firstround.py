@@ -50,7 +50,6 @@ EFFORTS = (
     BoxEffort(25, 13, 9, 24, 192, 9, 16, 8, 192, 64, AROUND // 2),
     BoxEffort(13, 9, 7, 24, 96, 5, 12, 4, 96, 24, AROUND // 3, False),
     BoxEffort(13, 7, 5, 16, 64, 5, 8, 2, 48, 12, AROUND // 4, False),
-    BoxEffort(13, 5, 3, 12, 48, 3, 6, 2, 24, 6, AROUND // 8, False),
 )
 """From full to least."""
 

@@ -31,6 +31,7 @@ from .shapes import Shapes
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
 LIMITS = {"theta_r": 145, "offset": 65}
 TWELVES = 12  # rows of theta_r are so many intervals, times a whole number
+LONGER = 256  # bytes that a promise over parameters takes more than one without
 MOST_EASE = 64.0  # times as much as usual that tables may lose, where the textures would be too large
 BANDS = 5  # of a coordinate, where the worst places are named
 RARE = 5.0  # times the tolerance that the worst hundredth of places may lose
@@ -251,7 +252,7 @@ def _fit_once(
         lambda share: report("fitting shares", share),
     )
     model = BakedModel(name, tuple(lobes), mixture, {}, box.parameters)
-    while (taken := stored(model)) > size and ease < MOST_EASE:
+    while (taken := stored(model) + LONGER) > size and ease < MOST_EASE:
         ease = min(max(2 * ease, ease * (taken / size) ** 2), MOST_EASE)
         report(f"baking, {taken / 1024:.0f} KB", 0.0)
         smaller = nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance, ease)
@@ -261,4 +262,4 @@ def _fit_once(
     lost = losses.lost(box, model, random)
     if not np.isfinite(measured.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
-    return FittedBox(box, model, counts, allowed, reach, measured, lost, stored(model) > size)
+    return FittedBox(box, model, counts, allowed, reach, measured, lost, stored(model) + LONGER > size)

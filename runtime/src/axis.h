@@ -23,7 +23,7 @@
 #include <stddef.h>
 
 #include "internal.h"
-#include "quad.h"
+#include "oct.h"
 
 /* Where theta_r lies: the row below it, the weight of the row above, in [0,1), and the weights of both times HAIRLUT_SCALE, all
  * in all lanes. Angles are multiplied by that scale with the blend: no product of four of them, as in R^2, leaves the range of a
@@ -111,6 +111,35 @@ HAIRLUT_INLINE unsigned hairlut_axis_search_small(const float *groups, hairlut_q
     return (unsigned)block * HAIRLUT_SMALL_GROUP + hairlut_count_eight(groups + HAIRLUT_LINE + HAIRLUT_LINE * block, t, x);
 }
 
+#ifdef HAIRLUT_OCT_AVX2
+/* -1 in the lanes of the blended texels of group g that are at most x */
+HAIRLUT_INLINE __m256i hairlut_axis_compared(const float *groups, int g, hairlut_oct t, hairlut_oct x)
+{
+    const float *group = groups + (g + 1) * HAIRLUT_LINE;
+    const hairlut_oct texels =
+        hairlut_oct_add(hairlut_oct_load(group), hairlut_oct_mul(t, hairlut_oct_load(group + HAIRLUT_SMALL_GROUP)));
+    return _mm256_castps_si256(_mm256_cmp_ps(texels, x, _CMP_LE_OQ));
+}
+
+/* The same by one count of all texels, where eight comparisons are one instruction: none waits for the block. An `if` goes the
+ * same way at every call for a table. */
+HAIRLUT_INLINE unsigned hairlut_axis_search_whole(const float *groups, int count, hairlut_quad t4, hairlut_quad x4)
+{
+    const hairlut_oct t = hairlut_oct_of(t4, t4), x = hairlut_oct_of(x4, x4);
+    const __m256i first = _mm256_packs_epi32(hairlut_axis_compared(groups, 0, t, x), hairlut_axis_compared(groups, 1, t, x));
+    __m256i third = _mm256_setzero_si256(), fourth = third;
+    unsigned fifth = 0;
+    if (count > 2)
+        third = hairlut_axis_compared(groups, 2, t, x);
+    if (count > 3)
+        fourth = hairlut_axis_compared(groups, 3, t, x);
+    if (count > 4)
+        fifth = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(hairlut_axis_compared(groups, 4, t, x)));
+    const unsigned four = (unsigned)_mm256_movemask_epi8(_mm256_packs_epi16(first, _mm256_packs_epi32(third, fourth)));
+    return (unsigned)_mm_popcnt_u32(four) + (unsigned)_mm_popcnt_u32(fifth);
+}
+#endif
+
 /* How many of the 16 texels of a group, blended with those of the row above, are at most x. */
 static inline unsigned hairlut_axis_count_large(const float *group, const float *above, hairlut_quad t, hairlut_quad x)
 {
@@ -150,6 +179,10 @@ HAIRLUT_INLINE unsigned hairlut_axis_search(const hairlut_axis *axis, const hair
 {
     const float *groups = axis->rows + (unsigned)row->j * (unsigned)axis->stride; /* unsigned: no sign is extended */
     const hairlut_quad x = hairlut_quad_all(angle);
+#ifdef HAIRLUT_OCT_AVX2
+    if (axis->groups)
+        return hairlut_axis_search_whole(groups, axis->groups, row->t, x);
+#endif
     return HAIRLUT_IS_SMALL(axis->columns) ? hairlut_axis_search_small(groups, row->t, x)
                                            : hairlut_axis_search_large(groups, axis, row->t, x);
 }

@@ -80,7 +80,7 @@ static inline const float *hairlut_gather(const float *values, int count, size_t
 extern const hairlut_batch hairlut_batch_portable;
 #ifdef HAIRLUT_BATCH_X86
 extern const hairlut_batch hairlut_batch_avx2;
-extern const hairlut_batch hairlut_batch_avx512; /* arrays only */
+extern const hairlut_batch hairlut_batch_avx512;
 #endif
 #ifdef HAIRLUT_BATCH_NEON
 extern const hairlut_batch hairlut_batch_neon;
@@ -90,7 +90,10 @@ extern const hairlut_batch hairlut_batch_neon;
 static inline const hairlut_batch *hairlut_best_kernels(void)
 {
 #if defined(HAIRLUT_BATCH_X86)
-    return hairlut_this_cpu() >= HAIRLUT_CPU_AVX2 ? &hairlut_batch_avx2 : &hairlut_batch_portable;
+    const hairlut_cpu cpu = hairlut_this_cpu();
+    return cpu == HAIRLUT_CPU_AVX512 ? &hairlut_batch_avx512
+           : cpu == HAIRLUT_CPU_AVX2 ? &hairlut_batch_avx2
+                                     : &hairlut_batch_portable;
 #elif defined(HAIRLUT_BATCH_NEON)
     return &hairlut_batch_neon;
 #else

@@ -21,6 +21,7 @@
  * row instead of two; in a large table they would crowd more out of the caches than they save. */
 enum { HAIRLUT_GROUP = 16, HAIRLUT_SMALL_GROUP = HAIRLUT_GROUP / 2, HAIRLUT_LINE = 16 /* floats of a cache line */ };
 #define HAIRLUT_NO_TEXEL FLT_MAX
+enum { HAIRLUT_LEAST_WHOLE = 2, HAIRLUT_MOST_WHOLE = 5 /* groups of a row that is searched as a whole (axis.h) */ };
 #define HAIRLUT_WHOLE(n, size) (((n) + (size) - 1) / (size) * (size))
 /* Small: 9 blocks of 8 have all cells. Else a block is the least power of two, from 16 on, of which 17 blocks have them; a side
  * is at most 4096. */
@@ -117,6 +118,7 @@ typedef struct hairlut_axis {
     int height;
     int stride; /* floats from one row to the next */
     int step;   /* cells of a block */
+    int groups; /* of cells, in a row that may be searched as a whole; else 0 */
     int grid;   /* the same number in all axes of a model whose rows are of the same theta_r */
     int alike;  /* whether all rows of a node are the same, as where an azimuth does not depend on theta_r; 0: not known */
 } hairlut_axis;

@@ -6,6 +6,7 @@
 #include "quad.h"
 
 #if defined(HAIRLUT_QUAD_SSE2) && defined(__AVX2__)
+#define HAIRLUT_OCT_AVX2
 typedef __m256 hairlut_oct;
 
 /* clang-format off */

@@ -209,6 +209,31 @@ static int rows_are_alike(const hairlut_table *t)
     return alike;
 }
 
+/* Whether blended texels increase from column to column at every theta_r as they are rounded. Then a search of a row as a whole
+ * finds the cell that a search by blocks finds. A blend is of three roundings, of the change to the row above, of its part and of
+ * the sum; what two neighbours lose together is less than the narrowest cell of a row. */
+static int stays_sorted(const hairlut_table *t)
+{
+    const double range = (double)t->domain_max - (double)t->domain_min,
+                 size = fmax(fabs(t->domain_min), fabs(t->domain_max));
+    const double lost = FLT_EPSILON * (2.0 * range + size);
+    for (int j = 0; j < t->height; ++j) {
+        const float *row = t->texels + (size_t)j * (size_t)t->width * TEXEL;
+        for (int i = 0; i + 1 < t->width; ++i)
+            if ((double)row[(i + 1) * TEXEL] - (double)row[i * TEXEL] < lost)
+                return 0;
+    }
+    return 1;
+}
+
+/* The groups of a row that is searched as a whole. The last column is not stored. Those of nodes are blended once more. */
+static int whole_groups(const hairlut_table *t)
+{
+    const int groups = HAIRLUT_WHOLE(t->width - 2, HAIRLUT_SMALL_GROUP) / HAIRLUT_SMALL_GROUP;
+    const int few = groups >= HAIRLUT_LEAST_WHOLE && groups <= HAIRLUT_MOST_WHOLE;
+    return few && t->axis_count == 0 && stays_sorted(t) ? groups : 0;
+}
+
 /* The fields of an axis that are numbers. */
 static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *scale)
 {
@@ -231,6 +256,7 @@ static hairlut_axis describe(const hairlut_table *t, const hairlut_warp_scale *s
     axis.height = t->height;
     axis.stride = HAIRLUT_STRIDE(t->width);
     axis.step = HAIRLUT_STEP(t->width);
+    axis.groups = whole_groups(t);
     axis.grid = 0;
     axis.alike = rows_are_alike(t);
     return axis;

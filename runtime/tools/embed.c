@@ -104,8 +104,9 @@ static void print_axis(const char *field, const hairlut_axis *axis)
     print_number("origin", axis->origin);
     print_number("low", axis->low);
     print_number("high", axis->high);
-    printf("\n      .pitch = %d, .warp = %d, .columns = %d, .height = %d, .stride = %d, .step = %d, .grid = %d},\n",
-           axis->pitch, axis->warp, axis->columns, axis->height, axis->stride, axis->step, axis->grid);
+    printf("\n      .pitch = %d, .warp = %d, .columns = %d, .height = %d, .stride = %d, .step = %d, .groups = %d, .grid = "
+           "%d},\n",
+           axis->pitch, axis->warp, axis->columns, axis->height, axis->stride, axis->step, axis->groups, axis->grid);
 }
 
 /* The arrays of an axis come before the struct that names them. */

@@ -26,7 +26,7 @@ SIDES = (16, 32, 64, 128, 256, 512)
 SEARCHED = 128  # sides up to which e is searched for; above, the smallest that leaves no cell too narrow
 SHIPPED, UNIFORM = "octaves", "uniform"  # the designs that are timed: a model directory each, DESIGN-SIDE
 NAMES = (
-    "^(fitted|brown|printed)/[^/]+/[^/]+/(one|native|avx2|arrays[0-9]*)$|"
+    "^(fitted|brown|printed)/[^/]+/[^/]+/(one|native|avx2|avx512|arrays[0-9]*)$|"
     f"^({SHIPPED}|{UNIFORM})-.*/(sample|pdf)_direct/hairlut/(one|arrays)$|^warp/"
 )
 
@@ -211,7 +211,7 @@ both densities.
   derived, written from the paper, for a single channel of absorption.
 
 "one at a time" is a call of a function for each sample, compiled with -O2 for any x86-64; hairlut chooses
-its AVX2 form while it runs, as it does for arrays. "fastest flags" is the same with -O3 -march=native
+its AVX2 or AVX-512 form while it runs, as it does for arrays. "fastest flags" is the same with -O3 -march=native
 -ffast-math, for this processor alone. Over arrays, rivals are loops that gcc vectorises
 with those flags and libmvec, for 256 and 512 bits. Their results then depend on the processor; hairlut's
 do not. The C library's scalar erff takes about 40 cycles, which is most of the scalar closed form's

@@ -214,9 +214,8 @@ static int rows_are_alike(const hairlut_table *t)
  * the sum; what two neighbours lose together is less than the narrowest cell of a row. */
 static int stays_sorted(const hairlut_table *t)
 {
-    const double range = (double)t->domain_max - (double)t->domain_min,
-                 size = fmax(fabs(t->domain_min), fabs(t->domain_max));
-    const double lost = FLT_EPSILON * (2.0 * range + size);
+    const double low = t->domain_min, high = t->domain_max;
+    const double lost = FLT_EPSILON * (2.0 * (high - low) + (high > -low ? high : -low));
     for (int j = 0; j < t->height; ++j) {
         const float *row = t->texels + (size_t)j * (size_t)t->width * TEXEL;
         for (int i = 0; i + 1 < t->width; ++i)

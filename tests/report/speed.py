@@ -211,8 +211,8 @@ both densities.
   derived, written from the paper, for a single channel of absorption.
 
 "one at a time" is a call of a function for each sample, compiled with -O2 for any x86-64; hairlut chooses
-its AVX2 or AVX-512 form while it runs, as it does for arrays. "fastest flags" is the same with -O3 -march=native
--ffast-math, for this processor alone. Over arrays, rivals are loops that gcc vectorises
+its AVX2 or AVX-512 form while it runs, as it does for arrays. "fastest flags" is the same with -O3
+-march=native -ffast-math, for this processor alone. Over arrays, rivals are loops that gcc vectorises
 with those flags and libmvec, for 256 and 512 bits. Their results then depend on the processor; hairlut's
 do not. The C library's scalar erff takes about 40 cycles, which is most of the scalar closed form's
 time. Its vector form (libmvec) is a modern one, faster than SLEEF's.

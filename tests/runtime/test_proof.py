@@ -27,6 +27,9 @@ NOT_EMPTY = "no block is empty: the callers see to it, the compiler does not kno
 UNREACHED = [
     ("batch.c", "hairlut_this_cpu()", PROCESSOR),
     ("batch.h", "cpu == HAIRLUT_CPU_AVX", PROCESSOR),
+    ("batch.h", ": &hairlut_batch_portable;", PROCESSOR),
+    ("cpu.h", "saves_zmm) ? HAIRLUT_CPU_AVX512", PROCESSOR),
+    ("cpu.h", ": HAIRLUT_CPU_AVX2;", PROCESSOR),
     ("cpu.h", "hairlut_read_cpuid", PROCESSOR),
     ("cpu.h", "hairlut_saved_registers()", PROCESSOR),
     ("cpu.h", ": HAIRLUT_CPU_AVX2;", PROCESSOR),

@@ -23,6 +23,7 @@ CHUNKS = "OpenEXR has compared the chunk's header with the image's: a second loo
 PROCESSOR = "another processor than this one"
 CONSTANT = "the size is a constant where this is inlined"
 NOT_EMPTY = "no block is empty: the callers see to it, the compiler does not know"
+ONE_WIDTH = "a function that this is inlined into meets tables of one width"
 # branches that nothing reaches: file, text of the line, reason
 UNREACHED = [
     ("batch.c", "hairlut_this_cpu()", PROCESSOR),
@@ -33,7 +34,10 @@ UNREACHED = [
     ("cpu.h", "hairlut_read_cpuid", PROCESSOR),
     ("cpu.h", "hairlut_saved_registers()", PROCESSOR),
     ("cpu.h", ": HAIRLUT_CPU_AVX2;", PROCESSOR),
+    ("simd_avx2.h", "for (int v = 1; v < vectors; ++v)", ONE_WIDTH),
+    ("simd_avx512.h", "for (int v = 1; v < vectors; ++v)", ONE_WIDTH),
     ("simd_eight.h", "if (n == HAIRLUT_SMALL_GROUP)", CONSTANT),
+    ("simd_eight.h", "if (alike)", CONSTANT),
     ("batch_axis.h", "for (size_t s = 0; s < n; s += LANES) {", NOT_EMPTY),
     ("batch_axis.h", "count(axis, axis->rows, n, q, size, alike, q->cell);", CONSTANT),
     ("batch_axis.h", "count(axis, axis->rows + HAIRLUT_LINE, n, q, size, alike, counts);", CONSTANT),
@@ -41,13 +45,7 @@ UNREACHED = [
     ("batch_axis.h", "if (alike)", CONSTANT),
     ("model.c", "SIZE_MAX / 4", "a size_t has 64 bits here: no model is larger"),
     ("strand_axis.h", "for (int c = 1; c < n; ++c)", CONSTANT),
-    ("strand_axis.h", "small ? to : hairlut_quad_sub(to, from)", CONSTANT),
-    ("strand_axis.h", "hairlut_strand_count(&s->table", CONSTANT),
-    ("strand_axis.h", "hairlut_strand_texels(table, ", CONSTANT),
-    ("strand_axis.h", "hairlut_strand_texels(&s->table", CONSTANT),
-    ("strand_axis.h", "n > 0 ? n : ", CONSTANT),
     ("one.h", "grid_row row = *at;", "where one lobe alone has a weight, the row is its own"),
-    ("strand_build.c", "INT32_MIN", "no float lies so near to an odd multiple of pi"),
     ("table.c", "blend_floats(memory, ", "no table is empty"),
     ("exr_compression.c", "offset > LONG_MAX", "a long has 64 bits here: no offset is beyond it"),
     ("exr_file.c", "if (code == EXR_ERR_SUCCESS && parts != 1)", OPENEXR),

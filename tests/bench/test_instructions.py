@@ -14,12 +14,12 @@ from runtime.c_library import ROOT, tool
 
 TOLERANCE = 0.15
 PINNED = {
-    ("fitted", "sample_direct"): 243,
-    ("fitted", "sample_multiple"): 219,
-    ("fitted", "pdf_direct"): 263,
-    ("fitted", "pdf_multiple"): 203,
-    ("fitted", "sample_hair"): 468,
-    ("fitted", "pdf_hair"): 428,
+    ("fitted", "sample_direct"): 246,
+    ("fitted", "sample_multiple"): 222,
+    ("fitted", "pdf_direct"): 291,
+    ("fitted", "pdf_multiple"): 219,
+    ("fitted", "sample_hair"): 483,
+    ("fitted", "pdf_hair"): 469,
     ("fitted", "sample_direct_n"): 52,
     ("fitted", "sample_multiple_n"): 33,
     ("fitted", "pdf_direct_n"): 89,

@@ -11,7 +11,7 @@ from runtime.by_hand import INCLUDE, SOURCE
 from runtime.c_library import BUILTIN, FLAGS, ROOT, Model, build, builtin, load, loops, run, tool
 
 pytestmark = pytest.mark.usefixtures("loader")
-LARGEST_LIBRARY = 1_000_000  # bytes
+LARGEST_LIBRARY = 1_100_000  # bytes, of which a set of kernels takes 0.2 MB
 
 
 @pytest.fixture(scope="module")

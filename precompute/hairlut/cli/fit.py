@@ -87,7 +87,8 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         "--budget",
         type=float,
         metavar="SECONDS",
-        help="time that a fit may take, about: fewer cells where it is short (default: "
+        help="time by the clock that a fit may take, about: fewer cells where it is short; a hair with "
+        "parameters takes half a minute of one core, or more, whatever the budget (default: "
         f"{DEFAULT_BUDGET:g}, for a hair with parameters {DEFAULT_BUDGET_OF_PARAMETERS:g})",
     )
     parser.add_argument(

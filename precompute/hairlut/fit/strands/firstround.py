@@ -26,6 +26,7 @@ MIXED = 12.0  # of the mixture
 class BoxEffort:
     """rows: of theta_r; offset: of the mixture; fitted_offsets: by which shapes are fitted; theta_i: cells;
     most_phi: cells of the azimuth, at most; steps: values of a parameter along which lobes are followed;
+    candidates: such values, at most, where steps are too far apart for the tolerance;
     sweeps: of a block's lobes; corners: of the box that are looked at; places: that are measured; nodes: of
     the mixture, all its parameters together; edge_azimuths: by which cells of theta_i are chosen;
     edges_of_phi: whether grazing viewers too choose the cells of the azimuth."""
@@ -36,6 +37,7 @@ class BoxEffort:
     theta_i: int = 32
     most_phi: int = 384
     steps: int = 9
+    candidates: int = 24
     sweeps: int = 24
     corners: int = 8
     places: int = 384
@@ -47,9 +49,9 @@ class BoxEffort:
 FULL = BoxEffort()
 EFFORTS = (
     FULL,
-    BoxEffort(25, 13, 9, 24, 192, 9, 16, 8, 192, 64, AROUND // 2),
-    BoxEffort(13, 9, 7, 24, 96, 5, 12, 4, 96, 24, AROUND // 3, False),
-    BoxEffort(13, 7, 5, 16, 64, 5, 8, 2, 48, 12, AROUND // 4, False),
+    BoxEffort(25, 13, 9, 24, 192, 9, 24, 16, 8, 192, 64, AROUND // 2),
+    BoxEffort(13, 9, 7, 24, 96, 5, 9, 12, 4, 96, 24, AROUND // 3, False),
+    BoxEffort(13, 7, 5, 16, 64, 5, 7, 8, 2, 48, 12, AROUND // 4, False),
 )
 """From full to least."""
 

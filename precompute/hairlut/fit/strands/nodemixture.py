@@ -218,9 +218,12 @@ def _nodes_along(
 
     values = box.steps(p, box.effort.steps, anchor[p])
     along = nodes.outwards(values, anchor[p], first, beside)
-    return nodes.chosen(
-        values, along, anchor[p], lambda values, along: _Loss(values, along, bend), beside, allowed
-    )
+    most = box.effort.candidates
+
+    def loss_of(values: Array, along: list[Mixed]) -> _Loss:
+        return _Loss(values, along, bend)
+
+    return nodes.chosen(values, along, anchor[p], loss_of, beside, allowed, most)
 
 
 class _Loss:

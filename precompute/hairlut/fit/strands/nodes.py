@@ -14,7 +14,6 @@ T = TypeVar("T")
 Loss = Callable[[int, int], float]
 TOO_FAR = 8.0
 """Times what is allowed, below which halving a gap is enough: the loss falls with its fourth power."""
-MOST = 24  # values of an axis that are tried
 
 
 def fewest(count: int, loss: Loss, allowed: float) -> list[int]:
@@ -77,17 +76,18 @@ def chosen(
     loss_of: Callable[[Array, list[T]], Loss],
     beside: Callable[[T, float], T],
     allowed: float,
+    most: int,
 ) -> tuple[Array, list[T]]:
     """The fewest nodes of an axis, the value `kept` among them, and the fit at each. values (n,): candidates;
     along: the fit at each; loss_of: the loss that `fewest` takes, of candidates and fits; beside(fit, value):
     a fit at a value that starts from a neighbour's. Where candidates are too far apart, more are fitted
-    between them."""
+    between them, up to `most` in all."""
     values, along = list(values), list(along)
     while True:
         loss = loss_of(np.array(values), along)
         wide = [i for i in range(1, len(values) - 1) if loss(i - 1, i + 1) > TOO_FAR * allowed]
         gaps = sorted({gap for i in wide for gap in (i - 1, i)}, reverse=True)
-        if not gaps or len(values) + len(gaps) > MOST:
+        if not gaps or len(values) + len(gaps) > most:
             break
         for gap in gaps:
             value = (values[gap] + values[gap + 1]) / 2

@@ -93,9 +93,8 @@ def _chosen(
         def loss_of(values: Array, along: list[Shapes], moving=moving) -> nodes.Loss:
             return _Blending(values, along, moving)
 
-        result[p] = nodes.chosen(
-            values, along, found.places[0][p], loss_of, beside, allowed[box.parameters[p].name]
-        )
+        name, most = box.parameters[p].name, box.effort.candidates
+        result[p] = nodes.chosen(values, along, found.places[0][p], loss_of, beside, allowed[name], most)
     return result
 
 

@@ -28,7 +28,7 @@ help:
 	@echo "make install  PREFIX=/usr/local: libraries, headers, CMake and pkg-config files, tables, shaders"
 	@echo "make bench    time the C library and its rivals, as ratios"
 	@echo "make report   regenerate tests/report/pages/: speed against error, hard cases, the study, shaders, explorer"
-	@echo "make fits     fit 42 hairs and one over parameters, hold them against their authors' samplers (15 minutes or more of one core)"
+	@echo "make fits     fit 43 hairs and one over parameters, hold them against their authors' samplers (half an hour of one core)"
 	@echo "make plugin   build the Mitsuba 3 plugin and print the folder to append to the engine's file resolver"
 	@echo "make render   render hair with Mitsuba: locks of hair, what it costs"
 	@echo "make fuzz     coverage-guided fuzzing, SECONDS_EACH=15 a fuzzer: files, tables in memory, table to file to table"

@@ -33,7 +33,7 @@ PAGES = {
         ("Mitsuba", "variants.md", "what a picture costs with the C++ plugin and with the Dr.Jit BSDF"),
     ),
     "make fits": (
-        ("Fitted hairs", "fit.md", "42 hairs as functions, fitted, beside the samplers of their authors"),
+        ("Fitted hairs", "fit.md", "43 hairs as functions, fitted, beside the samplers of their authors"),
         ("Largest weights", "fit_weights.md", "what weights lobes can reach at all, and what fits reach"),
         ("One model for every strand", "parameters.md", "size against samples, at random parameters"),
         ("What parameters cost", "strand_cost.md", "the time of a call with parameters, beside one without"),

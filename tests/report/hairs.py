@@ -163,7 +163,7 @@ def far_field() -> list[Subject]:
     """Hairs without offsets."""
     subjects = [Subject(f"karis {rough}", karis(rough), False) for rough in (0.3, 0.5)]
     subjects += [averaged(m, n, 0.6) for m, n in ((0.3, 0.3), (0.1, 0.3))]
-    subjects += [huang(roughness, absorption) for roughness, absorption in ((0.3, 0.3), (0.3, 1.5))]
+    subjects += [huang(0.3, 0.3)]
     return [
         *subjects,
         Subject("dual scattering", dual_scattering, False),

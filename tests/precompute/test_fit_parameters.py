@@ -122,6 +122,27 @@ def test_lobes_that_changed_places_at_some_offsets_are_put_back():
     assert fitting._steadier(good, bad, mass) is good
 
 
+def test_a_faded_lobe_keeps_the_turn_that_it_has_beside():
+    """A lobe of little light would turn to where another's tails are too thin, and between the two places be
+    turned away from its own light."""
+    angle, m = np.linspace(0, 1.2, 5), 96
+    x = (np.arange(m) + 0.5) / m * turning.TWO_PI - np.pi
+    bump = np.exp(8 * (np.cos(x) - 1))
+    theta, phi = np.full((8, 2), 1 / 8, np.float32), np.tile(bump / bump.sum(), (2, 1)).astype(np.float32)
+    turn = np.stack([-angle, 2.5 + angle], axis=1)
+    share = np.tile(np.float32([0.5, 0.5]), (5, 1))
+    strayed = turn + np.array([0.02, -1.5])
+    mass = np.full((5, 8, m), 1 / 8 / m, np.float32)
+    fitting = nodemixture.Fitting(None, [], np.zeros(1), angle, True)
+    faded = lobesfit.Row(theta, phi, np.tile(np.float32([0.999, 0.001]), (5, 1)), strayed)
+    led = fitting._led(faded, [(share, turn)], mass)
+    assert led.turn[:, 0] == pytest.approx(strayed[:, 0], abs=1e-3)
+    assert led.turn[:, 1] == pytest.approx(turn[:, 1], abs=1e-3)
+    assert (led.share != faded.share).any()
+    strong = lobesfit.Row(theta, phi, share, strayed)
+    assert fitting._led(strong, [(share, turn)], mass).turn == pytest.approx(strayed, abs=0.01)
+
+
 GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
 
 

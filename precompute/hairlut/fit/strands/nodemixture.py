@@ -11,7 +11,7 @@ by the convexity of (p - q)^2 / q, and to second order in d_k."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from time import perf_counter
@@ -34,10 +34,14 @@ FEW_OFFSETS = 13  # by which dependences are found
 VIEWERS = np.array([-0.96, -0.7, -0.35, 0.0, 0.35, 0.7, 0.96])  # parts of the largest theta_r
 GRAZING = np.array([15.0, 1.0, 1.0, 1.0, 1.0, 1.0, 15.0])
 """How many times as much may be lost there: few viewers are grazing."""
+LED, SHARES = 0.01, 4  # rad of turns that differ, and sweeps of the shares for other turns
 BETWEEN = 1 / 16  # of the loss at twice the distance of offsets: it falls with the fourth power
 SURE = 0.01  # V that blending between offsets may add before another start is tried
 UNSURE = 1.5  # times V with the best shares, at which others count as worse
 WORST = 3.0  # times the mean that may be lost at one theta_r
+FADED = 0.25
+"""Part of its share beside below which a lobe takes its turn from there: on its own it would turn to where
+another lobe's tails lack light, and between the two it would be turned away from its own."""
 SIZE_PART, THINNED = 0.5, 3
 """Of the textures' size that the mixture may take, about, and how much smaller fewer theta_r and offsets make
 it."""
@@ -94,6 +98,10 @@ class Fitting:
             row = Row(theta, phi, start.share[j], start.turn[j])
             if not fixed:
                 row = self._steadier(same_shapes(row, mass, self._angle, self._turning), before, mass)
+                if self._turning:
+                    beside = [(start.share[j], start.turn[j])]
+                    beside += [(before.share, before.turn)] if before else []
+                    row = self._led(row, beside, mass)
             rows[j], variance[j] = row, row.variance(mass)
         return Mixed(
             np.stack([rows[j].share for j in range(len(rows))]),
@@ -112,6 +120,19 @@ class Fitting:
             return row
         other = improved(start, mass, self._angle, SAME_SWEEPS, True, start, shapes=False, largest=MENDED)
         return min(row, other, key=lambda one: _unsteady(one, mass, self._angle))
+
+    def _led(self, row: Row, beside: Sequence[tuple[Array, Array]], mass: Array) -> Row:
+        """The row whose faded lobes have the turns that they have beside, (share, turn) each, with the shares
+        that then are best; or the row itself if that costs much: beside, turns may really be others."""
+        turn = row.turn
+        for share, other in beside:
+            trust = 1 / (1 + (FADED * share / row.share) ** 4)
+            turn = other + trust * wrap(turn - other)
+        if np.allclose(turn, row.turn, atol=LED):
+            return row
+        led = replace(row, turn=turn.astype(row.turn.dtype))
+        led = improved(led, mass, self._angle, SHARES, False, shapes=False, largest=MENDED)
+        return led if led.variance(mass) < UNSURE * row.variance(mass) + SURE else row
 
 
 def _unsteady(row: Row, mass: Array, angle: Array) -> float:

@@ -3,14 +3,15 @@
 
 import json
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from hairlut import cli, exr
 from hairlut.axes import Parameter
-from hairlut.fit import lobesfit, turning
-from hairlut.fit.strands import box, nodemixture, nodes, shapes, tied
+from hairlut.fit import hair, lobesfit, turning
+from hairlut.fit.strands import box, losses, nodemixture, nodes, nodeshapes, shapes, tied
 
 HAIR = """
 import numpy as np
@@ -87,6 +88,72 @@ def test_the_promise_is_in_the_header(fitted):
     promised = fitted.errors["mixture"]
     assert promised["low"] < promised["relative_variance"] < promised["high"] < 0.006
     assert promised["median_relative_variance"] < promised["percentile99_relative_variance"]
+
+
+NARROW = """
+import numpy as np
+
+PARAMETERS = {"width": (0.006, 0.03), "tilt": (-0.1, 0.1), "bend": (0.0, 0.2)}
+
+def bsdf(theta_r, theta_i, phi, width, tilt, bend):
+    x = theta_i + theta_r - 2 * tilt + bend * np.sin(theta_r) ** 3
+    return 0.02 * np.exp(-0.5 * (x / width) ** 2) / width * np.exp(3 * (np.cos(phi) - 1)) / np.cos(theta_i)
+"""
+
+
+def test_a_narrow_highlight_keeps_to_the_size_and_is_warned_of(tmp_path, capsys):
+    """It moves by many times its width from node to node, and at a corner beyond the pole, where f is 0."""
+    (tmp_path / "hair.py").write_text(NARROW)
+    fit = ["fit", str(tmp_path / "hair.py"), "--out", str(tmp_path), "--json", "--budget", "1"]
+    assert cli.main([*fit, "--size", "17"]) == 0
+    captured = capsys.readouterr()
+    found = json.loads(captured.out)
+    assert found["bytes"] <= 17 * 1024
+    assert "size" not in found["limits"]
+    place = found["worst_place"]
+    assert place["relative_variance"] >= found["worst_edge_relative_variance"] > 0.5
+    assert found["largest_weight"] >= place["largest_weight"]
+    assert f"V is {place['relative_variance']:.3g} and the largest weight" in captured.err
+    assert f"at width = {place['width']:.4g}, tilt = {place['tilt']:.4g}, bend = " in captured.err
+    assert any(
+        f"the nodes of {axis} are too far" in captured.err for axis in place["relative_variance_by_axis"]
+    )
+
+
+def test_fewer_nodes_where_tables_are_wide_or_time_is_short(monkeypatch):
+    def along(box, found, allowed, report):
+        count = max(2, round(64 * (0.01 / allowed["a"]) ** 0.25))
+        return {0: (np.arange(count), [None] * count)}
+
+    monkeypatch.setattr(nodeshapes, "_chosen", along)
+    found, start = SimpleNamespace(theta=(0,), phi=()), SimpleNamespace(theta_r=np.zeros(25), tied=True)
+
+    def count(columns, size, most):
+        given = None, found, start, (columns, 12), {"a": 0.01}, size, most
+        return len(nodeshapes.chosen(*given, lambda share: None)[0][0])
+
+    assert count(24, np.inf, np.inf) == 64
+    assert 8 * 25 * 240 * count(240, 2**20, np.inf) < 0.8 * 2**20
+    assert count(240, 2**20, np.inf) > 8
+    assert count(24, np.inf, 20) < 20
+    assert count(10**6, 1.0, 1.0) <= 6
+
+
+@pytest.mark.parametrize("count", [2, 8])
+def test_corners_of_the_box_and_grazing_viewers_are_measured(count):
+    parameters = tuple(Parameter(x, 1, 3, 2) for x in "abcdefgh"[:count])
+    given = box.Box(None, parameters, hair.Hair(None, True, False))
+    places = losses.edge_places(given, 48, np.random.default_rng(1))
+    corners, grazing = places.parameters[:32], abs(places.theta_r[16:])
+    assert set(np.unique(corners)) == {1, 3}
+    assert (np.count_nonzero(corners == 1, axis=0) == 16).all()
+    assert len(np.unique(corners, axis=0)) >= min(2**count, 30)
+    assert 0.2 < (np.isin(places.parameters[32:], [1, 3])).mean() < 0.8
+    assert grazing.min() > np.radians(79.5)
+    assert grazing.max() > np.radians(89.5)
+    assert (places.theta_r[16:] > 0).sum() == 16
+    assert abs(places.theta_r[:16]).min() < np.radians(20)
+    assert places.offset.shape == (48, losses.OFFSETS)
 
 
 def test_textures_over_parameters_take_no_more_memory_than_they_may(tmp_path, capsys):

@@ -194,7 +194,8 @@ def _of_parameters(
     text = f"{args.data}: {what}\n{summary.text(found, args.tolerance)}"
     at = found.measured
     losses = promise.Losses(at.theta_r, at.offset, at.variance, at.weight, at.light)
-    return summary.with_errors(found), text, figures, warnings.warnings(given.hair, losses)
+    warned = warnings.warnings(given.hair, losses) + summary.warnings(found)
+    return summary.with_errors(found), text, figures, warned
 
 
 @contextmanager

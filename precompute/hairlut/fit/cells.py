@@ -28,13 +28,15 @@ HARMONICS = 2048  # points around the fibre by which the number of the azimuth's
 PLACES = 33, 9  # of theta_i, even and near the mirror direction, for that
 CUTOFF = 2e-3  # harmonics weaker than this part of the mean are not resolved
 MIN_PHI, MAX_PHI = 48, 384
+GRAZING = np.radians(80.0)  # theta_r beyond which a highlight that misses the sphere leaves no light
 CHUNK = 2_000_000  # values at once
 
 
 @dataclass(frozen=True)
 class Cells:
     """theta_r (J,); offset (N,); theta_edges (J, n+1) of theta_i, rad; mass (J, N, n, m) of the cells, of
-    sum 1 for each theta_r and offset; light (J, N): the sums before, rad^2 times the density's unit."""
+    sum 1 for each theta_r and offset, also where f is 0 at all offsets; light (J, N): the sums before, rad^2
+    times the density's unit."""
 
     theta_r: Array
     offset: Array
@@ -43,12 +45,14 @@ class Cells:
     light: Array
 
     def dark(self) -> str | None:
-        """Where f was 0 in all directions that were evaluated, in words: there is nothing to draw there."""
+        """Where f was 0 in all directions that were evaluated, in words: there is nothing to draw there.
+        Grazing viewers may be without light."""
         lit = self.light.any(axis=1)
-        if lit.all():
-            return None
         if not lit.any():
             return "wherever it was evaluated"
+        lit |= abs(self.theta_r) > GRAZING
+        if lit.all():
+            return None
         return f"in all directions tried at theta_r = {np.degrees(self.theta_r[np.argmin(lit)]):.4g} deg"
 
 
@@ -59,6 +63,9 @@ def of_density(density: Density, theta_r: Array, offset: Array, theta_edges: Arr
     )
     light = mass.sum(axis=(2, 3))
     mass /= np.maximum(light, 1e-300)[..., None, None]
+    for j in np.flatnonzero(~light.any(axis=1)):  # a highlight that is beyond the pole: anything will do
+        even = np.diff(np.sin(theta_edges[j]))[:, None] / (2 * count)
+        mass[j] = np.broadcast_to(even, mass[j].shape)
     return Cells(theta_r, offset, theta_edges, mass.astype(np.float32), light)
 
 

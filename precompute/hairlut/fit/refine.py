@@ -33,6 +33,7 @@ from .turning import TWO_PI
 
 MAX_LOBES = 8
 USUAL_LOBES = 3  # reflected, transmitted, and reflected inside: so many are tried however late it is
+SEED = 0  # of the places by which rounds are compared
 GAIN = 0.0005
 """Lobes are worth their memory if they lower V by this much, and"""
 PART = 0.2
@@ -102,6 +103,7 @@ def fit(
     start = perf_counter()
     random = np.random.default_rng(0)
     best: Fitted | None = None
+    least = True, np.inf  # score of the best
 
     def left() -> float:
         return budget - (perf_counter() - start)
@@ -119,10 +121,11 @@ def fit(
         began = perf_counter()
         found = _fit_once(hair, name, axes, effort, count, turning, tolerance, size, random, so_far)
         seconds = perf_counter() - began
-        better = best is None or _score(found, tolerance) < _score(best, tolerance)
+        score = _score(found, tolerance)  # of the same places in all rounds
         if not limits(found, tolerance):
             found = _measured(found, hair, effort, random, so_far)
-        best = found if better else best
+        if best is None or score < least:
+            best, least = found, score
         finer = _finer(found, hair, tolerance)
         growth = np.prod([getattr(finer, axis) / getattr(axes, axis) for axis in LIMITS])
         if finer == axes or found.too_large or growth * seconds > left():
@@ -252,7 +255,7 @@ def _fit_once(
             break
     report("measuring", 0.0)
     loss = _losses(hair, model, axes, effort, random)
-    theta_r, offset = _random_places(hair, effort, random)
+    theta_r, offset = _random_places(hair, effort, np.random.default_rng(SEED))
     promised = promise.losses(model, hair.density, theta_r, offset, effort.around * axes.phi, random)
     if not np.isfinite(promised.variance).all():
         raise HairlutError("the fit has numbers that are not finite")

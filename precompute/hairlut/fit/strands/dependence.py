@@ -22,7 +22,7 @@ from .shapes import BOTH, NEITHER, PHI, THETA, Shapes
 JOINED = 4  # values of a parameter that are fitted together with the anchor's
 PATIENCE = 4  # times as many sweeps as usual until lobes that one place mixes are told apart by several
 HOPELESS = 2.0  # V above which the anchor's shapes are no start for values fitted together
-SLACK = 0.004  # of V that fixed shapes may cost
+SLACK, MOST_SLACK = 0.004, 0.01  # of V that fixed shapes may cost, and those of several values at one of them
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def dependence(box: Box, anchor: Shapes, report: Callable[[float], None]) -> Dep
 
 
 def _together(box: Box, base: Shapes, parameter: int) -> Shapes | None:
-    """The shapes that more values of a parameter have together, if these lose no more than each alone."""
+    """The shapes that more values of a parameter have together, if these lose little more than each alone."""
     start = base.places[0][parameter]
     values = box.steps(parameter, box.effort.steps, start)
     one = _one_place(base, 0)
@@ -77,7 +77,8 @@ def _together(box: Box, base: Shapes, parameter: int) -> Shapes | None:
     free = _followed(box, one, parameter, values, BOTH) or []
     for _ in range(PATIENCE):
         alone = [_one_place(together, len(base.places) + n).variance() for n in range(len(numbers))]
-        if all(v <= free[i].variance() + SLACK for v, i in zip(alone, numbers, strict=True)):
+        more = np.array(alone) - [free[i].variance() for i in numbers]
+        if more.mean() <= SLACK and more.max() <= MOST_SLACK:
             return together
         together = together.improved(box.effort.sweeps, BOTH, base.turning)
     return None

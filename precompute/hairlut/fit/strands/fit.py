@@ -31,9 +31,12 @@ from .shapes import Shapes
 NODE_PART = 0.15  # of the tolerance that blending between the nodes of an axis may cost
 LIMITS = {"theta_r": 145, "offset": 65}
 TWELVES = 12  # rows of theta_r are so many intervals, times a whole number
-LONGER = 256  # bytes that a promise over parameters takes more than one without
+LONGER = 384  # bytes that a promise over parameters takes more than one without
+SMALLER = 0.8  # where textures are too large even so, nodes are chosen for this part of what would fit
 MOST_EASE = 64.0  # times as much as usual that tables may lose, where the textures would be too large
 BANDS = 5  # of a coordinate, where the worst places are named
+SEED = 0  # of the places that are measured
+COMMON = 0.9  # part of the places at edges whose weights may not be too large
 RARE = 5.0  # times the tolerance that the worst hundredth of places may lose
 
 Report = Callable[[str, float], None]
@@ -43,8 +46,10 @@ Report = Callable[[str, float], None]
 class FittedBox:
     """A baked model over the parameters of a box. counts: rows of theta_r and offsets that were fitted;
     allowed: V that each axis might cost; reach: V that so many lobes have on the cells they were fitted to;
-    measured: V and weights at random places; lost: V that each axis costs (losses.py); too_large: whether the
-    textures take more memory than they may; out_of_time: whether finer axes were not tried for want of it."""
+    measured: V and weights at random places; edges: the same at corners of the box and at grazing viewers;
+    lost: V that each axis costs (losses.py); lost_at_worst: the same at the worst place of all; taken: bytes
+    of the textures; too_large: whether these are more than allowed; out_of_time: whether finer axes were not
+    tried for want of time."""
 
     box: Box
     model: BakedModel
@@ -52,8 +57,11 @@ class FittedBox:
     allowed: dict[str, float]
     reach: float
     measured: Measured
+    edges: Measured
     lost: dict[str, float]
-    too_large: bool = False
+    lost_at_worst: dict[str, float]
+    taken: int
+    too_large: bool
     out_of_time: bool = False
 
 
@@ -67,7 +75,6 @@ def fit(
     """The model of a hair with parameters. lobes: how many, or None to choose; budget: seconds that it may
     take, about; size: bytes that its textures may take, for which they lose more where they must."""
     start = perf_counter()
-    random = np.random.default_rng(0)
     box = replace(box, effort=_effort(box, budget))
     place, count = shapes.anchor_of(box, lobes, lambda share: report("choosing lobes", share))
     counts = {"theta_r": box.effort.rows, "offset": box.effort.offset}
@@ -75,23 +82,29 @@ def fit(
     found = _dependence(box, full, report)
     allowed = {axis: NODE_PART * tolerance for axis in (*counts, *(p.name for p in box.parameters))}
     best: FittedBox | None = None
+    room, taken = size, np.inf  # by which nodes are chosen, and what was too large
     while True:
         began = perf_counter()
-        so_far, until = _report(report, best), _until(box, start + budget) if best else box
+        so_far = _report(report, best)
+        until = _until(box, start + budget) if best and not best.too_large else box
         try:
             if full.theta_r.size != counts["theta_r"]:
                 full = _at_anchor(until, place, count, counts["theta_r"], so_far)
             fitted = _fit_once(
-                until, name, full, found, counts, allowed, tolerance, size, start + budget, random, so_far
+                until, name, full, found, counts, allowed, tolerance, size, room, start + budget, so_far
             )
         except _OutOfTime:
             return replace(best, out_of_time=True)
         if best is None or _score(fitted, tolerance) < _score(best, tolerance):
             best = fitted
-        finer = _finer(fitted, tolerance)
-        if finer is None or fitted.too_large:
+        if fitted.too_large:
+            room *= SMALLER * size / fitted.taken
+            finer, taken = (counts, allowed) if fitted.taken < taken else None, fitted.taken
+        else:
+            finer = _finer(fitted, tolerance)
+        if finer is None:
             return best
-        if perf_counter() + (perf_counter() - began) > start + budget:
+        if perf_counter() + (perf_counter() - began) > start + budget and not best.too_large:
             return replace(best, out_of_time=True)
         counts, allowed = finer
 
@@ -115,9 +128,15 @@ def limits(found: FittedBox, tolerance: float) -> list[str]:
     v, weight = found.measured.variance.mean(axis=1), found.measured.weight
     near = v.mean() <= found.reach + tolerance and np.quantile(v, 0.99) <= found.reach + RARE * tolerance
     size, budget = ["size"] * found.too_large, ["budget"] * found.out_of_time
-    if near and np.quantile(weight, 0.99) <= HEAVIEST:
+    if near and np.quantile(weight, 0.99) <= HEAVIEST and not _bad_edges(found, tolerance):
         return size
     return [*_standing_out(found, tolerance), *size, *budget] or [_worst_band(found)]
+
+
+def _bad_edges(found: FittedBox, tolerance: float) -> bool:
+    """Whether corners of the box and grazing viewers, together, lose what a hundredth of all places may."""
+    v, weight = found.edges.variance.mean(axis=1), found.edges.weight.max(axis=1)
+    return bool(v.mean() > found.reach + RARE * tolerance or np.quantile(weight, COMMON) > HEAVIEST)
 
 
 def _worst_band(found: FittedBox) -> str:
@@ -141,6 +160,9 @@ def _standing_out(found: FittedBox, tolerance: float) -> dict[str, float]:
     worst = np.quantile(found.measured.variance.mean(axis=1), 0.99)
     if not parts and worst > found.reach + RARE * tolerance:  # a few viewers, at grazing theta_r
         parts["theta_r"] = WEIGHT_PARTS
+    if _bad_edges(found, tolerance):
+        axis, lost = max(found.lost_at_worst.items(), key=lambda one: one[1])
+        parts[axis] = max(parts.get(axis, WEIGHT_PARTS), lost / (RARE * tolerance))
     return parts
 
 
@@ -164,7 +186,8 @@ def _score(found: FittedBox, tolerance: float) -> tuple[bool, float]:
     """What is lower for a better fit."""
     v, weight = found.measured.variance.mean(axis=1), found.measured.weight.max(axis=1)
     too_heavy = max(0.0, float(np.quantile(weight, 0.99)) / HEAVIEST - 1)
-    return found.too_large, float(v.mean() + np.quantile(v, 0.99) / RARE + tolerance * too_heavy)
+    rare = (np.quantile(v, 0.99) + found.edges.variance.mean()) / RARE
+    return found.too_large, float(v.mean() + rare + tolerance * too_heavy)
 
 
 def _until(box: Box, last: float) -> Box:
@@ -223,16 +246,24 @@ def _fit_once(
     allowed: dict[str, float],
     tolerance: float,
     size: float,
+    room: float,
     last: float,
-    random: np.random.Generator,
     report: Report,
 ) -> FittedBox:
+    began = perf_counter()
+    start = nodeshapes.start_of(box, anchor, found)
+    each = perf_counter() - began
     along = nodeshapes.chosen(
-        box, found, len(anchor.theta_r), allowed, size, lambda share: report("choosing nodes", share)
+        box,
+        found,
+        start,
+        nodetables.columns(found, TABLE_PART * tolerance),
+        allowed,
+        room,
+        nodeshapes.TIME_PART * (last - perf_counter()) / each,
+        lambda share: report("choosing nodes", share),
     )
-    start, theta, phi = nodeshapes.at_nodes(
-        box, anchor, found, along, lambda share: report("fitting lobes", share)
-    )
+    theta, phi = nodeshapes.at_nodes(box, start, found, along, lambda share: report("fitting lobes", share))
     reach = float(np.mean([one.variance() for one in (*theta.at.values(), *phi.at.values())]))
     report("baking", 0.0)
     ease, lobes = 1.0, nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance, 1.0)
@@ -247,7 +278,7 @@ def _fit_once(
         start.theta_r,
         angle,
         allowed,
-        size,
+        room,
         last,
         lambda share: report("fitting shares", share),
     )
@@ -258,8 +289,16 @@ def _fit_once(
         smaller = nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance, ease)
         model = replace(model, lobes=tuple(smaller))
     report("measuring", 0.0)
-    measured = losses.measured(box, model, random, lambda share: report("measuring", share))
+    random = np.random.default_rng(SEED)  # all rounds are measured at the same places, and so compared
+    count = box.effort.places
+    anywhere = losses.random_places(box, count, random)
+    at_edges = losses.edge_places(box, count // losses.EDGES, random)
+    measured = losses.measured(box, model, anywhere, random, lambda share: report("measuring", share))
+    edges = losses.measured(box, model, at_edges, random, lambda share: report("measuring corners", share))
     lost = losses.lost(box, model, random)
+    at_worst = losses.lost_at(box, model, losses.worst(losses.joined(measured, edges)), random)
     if not np.isfinite(measured.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
-    return FittedBox(box, model, counts, allowed, reach, measured, lost, stored(model) + LONGER > size)
+    return FittedBox(
+        box, model, counts, allowed, reach, measured, edges, lost, at_worst, taken, too_large=taken > size
+    )

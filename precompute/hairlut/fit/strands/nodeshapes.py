@@ -6,6 +6,7 @@ followed from node to node, from the anchor outwards."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
@@ -23,8 +24,9 @@ from .dependence import Dependence
 from .shapes import BOTH, THETA, Shapes
 
 WIDTH, WARP = 64, Warp("octaves", 2.0**-11)  # of the tables by which nodes are chosen
-SIZE_PART, USUAL_WIDTH = 0.7, 24  # of the textures' size that tables may take, and their width, about
-MOST_DOUBLINGS = 6  # of what nodes may cost, for tables of this size
+SIZE_PART = 0.7  # of the textures' size that tables may take, about
+TIME_PART = 0.4  # of the time left that shapes at nodes may take
+MOST_DOUBLINGS = 16  # of what nodes may cost, for tables of this size in this time
 ENOUGH_JOINED = 2  # places by which the shapes of all rows are fitted
 
 
@@ -55,27 +57,25 @@ def exact_phi(found: Shapes, lobe: int, theta_r: Array) -> smooth.SmoothRows:
 def chosen(
     box: Box,
     found: Dependence,
-    rows: int,
+    start: Shapes,
+    columns: tuple[int, int],
     allowed: Mapping[str, float],
     size: float,
+    most: float,
     report: Callable[[float], None],
 ) -> dict[int, tuple[Array, list[Shapes]]]:
     """The nodes of each parameter on which shapes depend, with the shapes there. allowed: V that blending
-    between the nodes of a parameter may cost; more of it where the tables would be too large otherwise.
-    size: bytes of all textures."""
+    between the nodes of a parameter may cost; more of it where there would be too many otherwise. columns: of
+    all lobes' tables of inclinations and of azimuths; size: bytes of all textures; most: nodes of both."""
     result: dict[int, tuple[Array, list[Shapes]]] = {}
+    rows = columns[0] * len(start.theta_r), columns[1] * (2 if start.tied else len(start.theta_r))
     for doublings in range(MOST_DOUBLINGS):
         result = _chosen(box, found, {name: v * 2**doublings for name, v in allowed.items()}, report)
-        if _bytes(found, result, rows) <= SIZE_PART * size:
+        theta, phi = (math.prod(len(result[p][0]) for p in axes) for axes in (found.theta, found.phi))
+        small = 8 * (theta * rows[0] + phi * rows[1]) <= SIZE_PART * size
+        if (small and theta + phi <= most) or all(len(values) == 2 for values, _ in result.values()):
             break
     return result
-
-
-def _bytes(found: Dependence, along: dict[int, tuple[Array, list[Shapes]]], rows: int) -> int:
-    """Of tables of usual width."""
-    theta, phi = (int(np.prod([len(along[p][0]) for p in axes])) for axes in (found.theta, found.phi))
-    lobes = found.base.rows[0].phi.shape[0]
-    return 8 * USUAL_WIDTH * lobes * (theta * rows + phi * (2 if found.base.tied else rows))
 
 
 def _chosen(
@@ -142,15 +142,8 @@ def _variance(exact: smooth.SmoothRows, x: Array, slopes: Array) -> Array:
     return (((weight - 1) ** 2 @ tables.WEIGHTS) * read.h).sum(axis=1)
 
 
-def at_nodes(
-    box: Box,
-    full: Shapes,
-    found: Dependence,
-    along: dict[int, tuple[Array, list[Shapes]]],
-    report: Callable[[float], None],
-) -> tuple[Shapes, NodeShapes, NodeShapes]:
-    """(shapes of all theta_r at the anchor, inclinations and azimuths at all nodes). full: the anchor's own
-    shapes of all theta_r."""
+def start_of(box: Box, full: Shapes, found: Dependence) -> Shapes:
+    """The shapes of all theta_r at the anchor, and at places that have the same. full: the anchor's own."""
     tied = found.base.tied
     start = full
     if tied:
@@ -159,19 +152,29 @@ def at_nodes(
     numbers = _some(len(found.places))
     places = tuple(found.places[i] for i in numbers)
     starts = shapes.starts_like(start, found.base, numbers)
-    start = shapes.joined(box, start, places, starts, THETA if tied else BOTH)
+    return shapes.joined(box, start, places, starts, THETA if tied else BOTH)
+
+
+def at_nodes(
+    box: Box,
+    start: Shapes,
+    found: Dependence,
+    along: dict[int, tuple[Array, list[Shapes]]],
+    report: Callable[[float], None],
+) -> tuple[NodeShapes, NodeShapes]:
+    """(inclinations, azimuths) at all nodes; start: the shapes of all theta_r at the anchor."""
     theta = _grid(box, start, found, found.theta, along, {}, lambda share: report(share * 0.8))
     common = _part(theta, found.phi, found.places[0])
     if set(found.phi) <= set(found.theta):
-        return start, theta, common
-    if tied:
+        return theta, common
+    if start.tied:
         few = shapes.some(len(start.theta_r))
         common = replace(common, at={index: shapes.of_rows(one, few) for index, one in common.at.items()})
     known = {
         tuple(zip(common.axes, _values(common, index), strict=True)): one for index, one in common.at.items()
     }
     phi = _grid(box, start, found, found.phi, along, known, lambda share: report(0.8 + share * 0.2))
-    return start, theta, phi
+    return theta, phi
 
 
 def _values(grid: NodeShapes, index: tuple[int, ...]) -> tuple[float, ...]:

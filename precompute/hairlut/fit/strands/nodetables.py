@@ -21,8 +21,11 @@ from ..smooth import SmoothRows
 from ..tables import Need
 from ..turning import TWO_PI
 from .box import Box
+from .dependence import Dependence
 from .nodeshapes import NodeShapes, exact_phi, exact_theta
 from .shapes import Shapes
+
+EASE = 8.0  # times the loss, by which widths are estimated while nodes are chosen
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,23 @@ def lobes(
             )
         )
     return baked
+
+
+def columns(found: Dependence, loss: float) -> tuple[int, int]:
+    """(of all inclinations, of all azimuths) columns that tables of the shapes need which are known while
+    nodes are chosen, where they lose somewhat more than `loss`."""
+    some = [found.base, *(one for _, along in found.along.values() for one in (along[0], along[-1]))]
+    theta = phi = 0
+    for k in range(found.base.rows[0].phi.shape[0]):
+        inclinations, azimuths = [], []
+        for one in some:
+            need = Need(one.light[:, k], one.bright[:, k], tables.FROM_WIDTH * loss)
+            inclinations.append(_Node(exact_theta(one, k), need.eased(EASE)))
+            need = replace(_need_of_phi(one, k, loss), loss=tables.FROM_WIDTH * loss)
+            azimuths.append(_Node(exact_phi(one, k, one.theta_r), need.eased(EASE)))
+        theta += _widest_enough("theta", "lobe", inclinations)[0].width
+        phi += _widest_enough("lobe_phi", "lobe", azimuths)[0].width
+    return theta, phi
 
 
 def _need_of_phi(found: Shapes, lobe: int, loss: float) -> Need:

@@ -10,9 +10,11 @@ import numpy as np
 from ...lobes import Array
 from ...model import BakedModel
 from ..summary import QUANTILE, lobes_text
+from . import losses
 from .fit import FittedBox, limits
 
 BANDS = 5  # of a parameter in the text
+FEW, FIREFLY = 0.5, 100.0  # V and a weight above which a place is warned of
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,8 @@ class Promise:
     high: float
     median_relative_variance: float
     percentile99_relative_variance: float
+    edge_relative_variance: float
+    worst_edge_relative_variance: float
     largest_weight: float
     percentile99_largest_weight: float
 
@@ -33,6 +37,7 @@ class Promise:
 def promise(found: FittedBox) -> Promise:
     """The numbers of a fit's measurement."""
     v, weight = found.measured.variance.mean(axis=1), found.measured.weight.max(axis=1)
+    edges = found.edges.variance.mean(axis=1)
     error = QUANTILE * v.std(ddof=1) / np.sqrt(len(v))
     return Promise(
         relative_variance=float(v.mean()),
@@ -40,19 +45,21 @@ def promise(found: FittedBox) -> Promise:
         high=float(v.mean() + error),
         median_relative_variance=float(np.median(v)),
         percentile99_relative_variance=float(np.quantile(v, 0.99)),
-        largest_weight=float(weight.max()),
+        edge_relative_variance=float(edges.mean()),
+        worst_edge_relative_variance=float(edges.max()),
+        largest_weight=float(max(weight.max(), found.edges.weight.max())),
         percentile99_largest_weight=float(np.quantile(weight, 0.99)),
     )
 
 
 def data(found: FittedBox, tolerance: float) -> dict:
     """Everything as plain data."""
-    model, measured = found.model, found.measured
-    worst = int(measured.variance.mean(axis=1).argmax())
-    names = [p.name for p in found.box.parameters]
+    model, everywhere = found.model, losses.joined(found.measured, found.edges)
+    worst = int(everywhere.variance.mean(axis=1).argmax())
     return {
         **asdict(promise(found)),
-        "places": len(measured.theta_r),
+        "places": found.measured.count,
+        "edge_places": found.edges.count,
         "reach": found.reach,
         "tolerance": tolerance,
         "limits": limits(found, tolerance),
@@ -66,9 +73,11 @@ def data(found: FittedBox, tolerance: float) -> dict:
         },
         "relative_variance_by_axis": found.lost,
         "worst_place": {
-            **dict(zip(names, measured.parameters[worst].tolist(), strict=True)),
-            "theta_r_deg": float(np.degrees(measured.theta_r[worst])),
-            "relative_variance": float(measured.variance[worst].mean()),
+            **found.box.named(everywhere.parameters[worst].tolist()),
+            "theta_r_deg": float(np.degrees(everywhere.theta_r[worst])),
+            "relative_variance": float(everywhere.variance[worst].mean()),
+            "largest_weight": float(everywhere.weight[worst].max()),
+            "relative_variance_by_axis": found.lost_at_worst,
         },
     }
 
@@ -100,10 +109,33 @@ def text(found: FittedBox, tolerance: float) -> str:
             )
     lines.append(
         f"{'all':>24} {errors.relative_variance:10.4f} {errors.percentile99_relative_variance:8.4f} "
-        f"{errors.largest_weight:8.2f} (95 %: {errors.low:.4f} to {errors.high:.4f}; "
+        f"{weight.max():8.2f} (95 %: {errors.low:.4f} to {errors.high:.4f}; "
         f"median {errors.median_relative_variance:.4f})"
     )
+    v, weight = found.edges.variance.mean(axis=1), found.edges.weight.max(axis=1)
+    lines.append(
+        f"{'corners and grazing':>24} {v.mean():10.4f} {np.quantile(v, 0.99):8.4f} {weight.max():8.2f} "
+        f"(at {found.edges.count} corners of the box, and viewers beyond 80 deg)"
+    )
     return "\n".join([*lines, "", _verdict(found, tolerance)])
+
+
+def warnings(found: FittedBox) -> list[str]:
+    """A warning of the worst place, where that is bad."""
+    everywhere = losses.joined(found.measured, found.edges)
+    v, weight = everywhere.variance.mean(axis=1), everywhere.weight.max(axis=1)
+    if v.max() <= FEW and weight.max() <= FIREFLY:
+        return []
+    worst = int((v / FEW if v.max() > FEW else weight).argmax())
+    at = ", ".join(f"{name} = {x:.4g}" for name, x in found.box.named(everywhere.parameters[worst]).items())
+    axis, lost = max(found.lost_at_worst.items(), key=lambda one: one[1])
+    why = f": the nodes of {axis} are too far apart there" if lost > v.max() / 2 > FEW / 2 else ""
+    bad = int(((v > FEW) | (weight > FIREFLY)).sum())
+    return [
+        f"at {bad} of {len(v)} places V is above {FEW:g} or a weight above {FIREFLY:g}: V is {v[worst]:.3g} "
+        f"and the largest weight {weight[worst]:.3g} at {at}, theta_r = "
+        f"{np.degrees(everywhere.theta_r[worst]):.3g} deg{why}"
+    ]
 
 
 def _axes(model: BakedModel) -> list:

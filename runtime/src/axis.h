@@ -123,9 +123,9 @@ HAIRLUT_INLINE __m256i hairlut_axis_compared(const float *groups, int g, hairlut
 
 /* The same by one count of all texels, where eight comparisons are one instruction: none waits for the block. An `if` goes the
  * same way at every call for a table. */
-HAIRLUT_INLINE unsigned hairlut_axis_search_whole(const float *groups, int count, hairlut_quad t4, hairlut_quad x4)
+HAIRLUT_INLINE unsigned hairlut_axis_search_whole(const float *groups, int count, hairlut_quad t4, float angle)
 {
-    const hairlut_oct t = hairlut_oct_of(t4, t4), x = hairlut_oct_of(x4, x4);
+    const hairlut_oct t = hairlut_oct_of(t4, t4), x = hairlut_oct_all(angle);
     const __m256i first = _mm256_packs_epi32(hairlut_axis_compared(groups, 0, t, x), hairlut_axis_compared(groups, 1, t, x));
     __m256i third = _mm256_setzero_si256(), fourth = third;
     unsigned fifth = 0;
@@ -178,11 +178,11 @@ static inline unsigned hairlut_axis_search_large(const float *groups, const hair
 HAIRLUT_INLINE unsigned hairlut_axis_search(const hairlut_axis *axis, const hairlut_row *row, float angle)
 {
     const float *groups = axis->rows + (unsigned)row->j * (unsigned)axis->stride; /* unsigned: no sign is extended */
-    const hairlut_quad x = hairlut_quad_all(angle);
 #ifdef HAIRLUT_OCT_AVX2
-    if (axis->groups)
-        return hairlut_axis_search_whole(groups, axis->groups, row->t, x);
+    if (HAIRLUT_MOSTLY(axis->groups))
+        return hairlut_axis_search_whole(groups, axis->groups, row->t, angle);
 #endif
+    const hairlut_quad x = hairlut_quad_all(angle);
     return HAIRLUT_IS_SMALL(axis->columns) ? hairlut_axis_search_small(groups, row->t, x)
                                            : hairlut_axis_search_large(groups, axis, row->t, x);
 }
@@ -203,19 +203,43 @@ HAIRLUT_INLINE hairlut_found hairlut_axis_find(const hairlut_axis *axis, const h
     return found;
 }
 
+/* What was found on four axes, an axis a lane; or on two, in lanes 0 and 1. */
+typedef struct hairlut_axes {
+    hairlut_quad x, given, h, cell[4];
+} hairlut_axes;
+
+HAIRLUT_INLINE hairlut_axes hairlut_four_axes(const hairlut_found found[4])
+{
+    hairlut_axes axes;
+    for (int l = 0; l < 4; ++l)
+        axes.cell[l] = found[l].cell;
+    hairlut_quad_transpose(axes.cell);
+    axes.x = hairlut_quad_of_four(found[0].x, found[1].x, found[2].x, found[3].x);
+    axes.given = hairlut_quad_of_four(found[0].given, found[1].given, found[2].given, found[3].given);
+    axes.h = hairlut_quad_of_four(found[0].h, found[1].h, found[2].h, found[3].h);
+    return axes;
+}
+
+HAIRLUT_INLINE hairlut_axes hairlut_two_axes(const hairlut_found found[2])
+{
+    hairlut_axes axes;
+    hairlut_quad_pair(found[0].cell, found[1].cell, axes.cell);
+    axes.x = hairlut_quad_of_two(found[0].x, found[1].x);
+    axes.given = hairlut_quad_of_two(found[0].given, found[1].given);
+    axes.h = hairlut_quad_of_two(found[0].h, found[1].h);
+    return axes;
+}
+
 /* Where angles lie in their cells, an axis a lane: |dx/dm| = root / bend, the R and the h G of above; xi : q = side : sum, or
  * sum : side where `balance`, B, is negative. */
 typedef struct hairlut_inverses {
     hairlut_quad root, bend, balance, side, sum;
 } hairlut_inverses;
 
-HAIRLUT_INLINE hairlut_inverses hairlut_invert_four(const hairlut_found found[4])
+HAIRLUT_INLINE hairlut_inverses hairlut_invert(const hairlut_axes *axes)
 {
     hairlut_inverses inverse;
-    hairlut_quad cell[4] = {found[0].cell, found[1].cell, found[2].cell, found[3].cell};
-    hairlut_quad_transpose(cell);
-    const hairlut_quad x = hairlut_quad_of_four(found[0].x, found[1].x, found[2].x, found[3].x);
-    const hairlut_quad h = hairlut_quad_of_four(found[0].h, found[1].h, found[2].h, found[3].h);
+    const hairlut_quad *cell = axes->cell, x = axes->x, h = axes->h;
     const hairlut_quad d0 = hairlut_quad_abs(cell[1]), w = hairlut_quad_abs(cell[2]), d1 = hairlut_quad_abs(cell[3]);
     const hairlut_quad scaled = hairlut_quad_mul(x, hairlut_quad_all(HAIRLUT_SCALE)), twice = hairlut_quad_add(w, w);
     const hairlut_quad beyond = hairlut_quad_flipped(hairlut_quad_sub(scaled, cell[0]), cell[2]);
@@ -237,14 +261,25 @@ HAIRLUT_INLINE hairlut_inverses hairlut_invert_four(const hairlut_found found[4]
 
 /* The densities of two lobes, in lanes 0 and 2: products of those of two axes each, 0 where a lobe's domain does not contain the
  * direction. */
-HAIRLUT_INLINE hairlut_quad hairlut_densities(const hairlut_found found[4])
+HAIRLUT_INLINE hairlut_quad hairlut_densities_of(const hairlut_axes *axes)
 {
-    const hairlut_inverses inverse = hairlut_invert_four(found);
-    const hairlut_quad given = hairlut_quad_of_four(found[0].given, found[1].given, found[2].given, found[3].given);
-    const hairlut_quad x = hairlut_quad_of_four(found[0].x, found[1].x, found[2].x, found[3].x);
-    const hairlut_quad bend = hairlut_quad_where_equal(given, x, inverse.bend);
+    const hairlut_inverses inverse = hairlut_invert(axes);
+    const hairlut_quad bend = hairlut_quad_where_equal(axes->given, axes->x, inverse.bend);
     return hairlut_quad_div(hairlut_quad_mul(bend, hairlut_quad_swapped(bend)),
                             hairlut_quad_mul(inverse.root, hairlut_quad_swapped(inverse.root)));
+}
+
+HAIRLUT_INLINE hairlut_quad hairlut_densities(const hairlut_found found[4])
+{
+    const hairlut_axes axes = hairlut_four_axes(found);
+    return hairlut_densities_of(&axes);
+}
+
+/* That of one lobe. */
+HAIRLUT_INLINE float hairlut_density(const hairlut_found found[2])
+{
+    const hairlut_axes axes = hairlut_two_axes(found);
+    return hairlut_quad_first(hairlut_densities_of(&axes));
 }
 
 /* The place of u on the axis at theta_r, and its cell, scaled. */
@@ -301,8 +336,9 @@ static inline float hairlut_axis_invert(const hairlut_axis *axis, float theta_r,
 {
     const hairlut_row row = hairlut_axis_row(axis, theta_r);
     const int cell = (int)hairlut_axis_search(axis, &row, hairlut_axis_inside(axis, x)), mirrored = axis->columns - 2 - cell;
-    const hairlut_found one = hairlut_axis_find(axis, &row, x), four[4] = {one, one, one, one};
-    const hairlut_inverses inverse = hairlut_invert_four(four);
+    const hairlut_found one = hairlut_axis_find(axis, &row, x), two[2] = {one, one};
+    const hairlut_axes axes = hairlut_two_axes(two);
+    const hairlut_inverses inverse = hairlut_invert(&axes);
     const hairlut_quad part = hairlut_quad_by_sign(inverse.balance, inverse.sum, inverse.side);
     const float xi = hairlut_quad_first(hairlut_quad_div(part, hairlut_quad_add(inverse.side, inverse.sum)));
     const float u0 = axis->knots[HAIRLUT_KNOT * (cell < mirrored ? cell : mirrored)];

@@ -274,7 +274,7 @@ HAIRLUT_INLINE void end_search(const hairlut_axis *axis, size_t n, axis_searches
     fetch_searches(axis, n, q, 0);
 }
 
-/* hairlut_invert_four, of an axis: bend and root of directions s .. s+LANES-1 */
+/* hairlut_invert, of an axis: bend and root of directions s .. s+LANES-1 */
 HAIRLUT_INLINE real inverse(const axis_searches *q, size_t s, real *root_of)
 {
     const real w = load(q->t + s), d0 = load(q->d0 + s), d1 = load(q->d1 + s), from = load(q->x + s), to = sub(w, from);

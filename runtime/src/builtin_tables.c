@@ -8310,14 +8310,17 @@ static const hairlut_lobe lobes_brown[3] = {
 };
 const hairlut_builtin_entry hairlut_builtin_entries[] = {
     {"printed", {.lobe_count = 2, .direct = 0, .multiple = 1, .lobes = lobes_printed,
+      .grid_count = 3, .grids = {&lobes_printed[0].theta, &lobes_printed[0].phi, &lobes_printed[1].theta},
       .mixture = {.fours = array_0, .theta_r = {.inner = array_1, .pairs = array_1 + 0, .count = 1, .eights = 0, .last = 0.0f, }, .arc = {.inner = array_1, .pairs = array_1 + 0, .count = 1, .eights = 0, .last = 0.0f, }, 
       .four_count = 1, .above = 0, .beside = 0, .mirrored = 0, .turned = 0, .constant = 1,
       .mix = {.share = {0.5f, 0.5f}, .weight = {0.5f, 0.5f}, .turn = {0.0f, 0.0f}, .sum = 1.0f, .side = 1.0f, .lobes = {0, 1}, .count = 2}}}},
     {"fitted", {.lobe_count = 2, .direct = 0, .multiple = 1, .lobes = lobes_fitted,
+      .grid_count = 1, .grids = {&lobes_fitted[1].theta},
       .mixture = {.fours = array_0, .theta_r = {.inner = array_1, .pairs = array_1 + 0, .count = 1, .eights = 0, .last = 0.0f, }, .arc = {.inner = array_1, .pairs = array_1 + 0, .count = 1, .eights = 0, .last = 0.0f, }, 
       .four_count = 1, .above = 0, .beside = 0, .mirrored = 0, .turned = 0, .constant = 1,
       .mix = {.share = {0.5f, 0.5f}, .weight = {0.5f, 0.5f}, .turn = {0.0f, 0.0f}, .sum = 1.0f, .side = 1.0f, .lobes = {0, 1}, .count = 2}}}},
     {"brown", {.lobe_count = 3, .direct = -1, .multiple = -1, .lobes = lobes_brown,
+      .grid_count = 3, .grids = {&lobes_brown[2].phi, &lobes_brown[1].phi, &lobes_brown[2].theta},
       .mixture = {.fours = array_23, .theta_r = {.inner = array_24, .pairs = array_24 + 40, .count = 37, .eights = 5, .last = 1.56905103f, }, .arc = {.inner = array_25, .pairs = array_25 + 16, .count = 11, .eights = 2, .last = 1.5566529f, }, 
       .four_count = 1, .above = 11, .beside = 1, .mirrored = 1, .turned = 1, .constant = 0,
       .mix = {.share = {0.0f, 0.0f, 0.0f}, .weight = {0.0f, 0.0f, 0.0f}, .turn = {0.0f, 0.0f, 0.0f}, .sum = 0.0f, .side = 0.0f, .lobes = {0, 0, 0}, .count = 0}}}},

@@ -85,6 +85,13 @@ enum { HAIRLUT_CELL = 4, HAIRLUT_KNOT = 4 /* floats */ };
 #define HAIRLUT_APART
 #endif
 
+/* Which way an `if` mostly goes: what seldom happens is laid out of the way. */
+#if defined(__GNUC__)
+#define HAIRLUT_MOSTLY(condition) __builtin_expect(!!(condition), 1)
+#else
+#define HAIRLUT_MOSTLY(condition) (condition)
+#endif
+
 /* Before a loop over single samples: less of it is counting. clang does so by itself. */
 #if defined(__GNUC__) && !defined(__clang__)
 #define HAIRLUT_UNROLLED _Pragma("GCC unroll 4")
@@ -176,11 +183,15 @@ typedef struct hairlut_mixture {
     hairlut_mix mix;
 } hairlut_mixture;
 
+enum { HAIRLUT_MOST_TABLES = 2 * HAIRLUT_MAX_LOBES };
+
 struct hairlut_model {
     int lobe_count;
     int direct; /* the number of the lobe "direct", or -1 */
     int multiple;
     const hairlut_lobe *lobes;
+    int grid_count;                                 /* grids of rows */
+    const hairlut_axis *grids[HAIRLUT_MOST_TABLES]; /* an axis of each, by its number */
     hairlut_mixture mixture;
     hairlut_allocator allocator; /* what hairlut_free gives the memory back to; zero for compiled-in models */
     const struct hairlut_strands

@@ -194,6 +194,24 @@ static void build_lobe(hairlut_lobe *lobe, const hairlut_lobe_desc *desc, table_
     memcpy(lobe->name, desc->name, strlen(desc->name));
 }
 
+/* An axis of each grid. */
+static void list_grid(hairlut_model *model, const hairlut_axis *axis)
+{
+    model->grids[axis->grid] = axis;
+    if (axis->grid >= model->grid_count)
+        model->grid_count = axis->grid + 1;
+}
+
+static void list_grids(hairlut_model *model, const hairlut_lobe *lobes, int lobe_count)
+{
+    model->grid_count = 0;
+    for (int k = 0; k < lobe_count; ++k) {
+        list_grid(model, &lobes[k].theta);
+        if (!lobes[k].uniform)
+            list_grid(model, &lobes[k].phi);
+    }
+}
+
 static const size_t line = HAIRLUT_LINE * sizeof(float);
 
 /* The next place that begins a cache line. */
@@ -282,6 +300,7 @@ static void build_model(hairlut_model *model, const hairlut_model_desc *desc, ta
     number_grids(list);
     for (int k = 0; k < desc->lobe_count; ++k)
         build_lobe(&lobes[k], lobe_at(desc, k), list);
+    list_grids(model, lobes, desc->lobe_count);
     if (strands)
         hairlut_build_strand_tables(strands, lobes, desc->lobe_count);
     hairlut_build_mixture(&model->mixture, desc->mixture, desc->lobe_count, &nodes, &corners, mixture);

@@ -9,7 +9,6 @@
 #include "internal.h"
 
 enum {
-    HAIRLUT_MOST_TABLES = 2 * HAIRLUT_MAX_LOBES,
     HAIRLUT_MOST_GRIDS = HAIRLUT_MOST_TABLES + 2, /* one for each table, for the mixture, and the one without axes */
     HAIRLUT_MOST_SCALES = HAIRLUT_MAX_AXES * (HAIRLUT_MOST_TABLES + 1),
     HAIRLUT_CORNERS = 1 << HAIRLUT_MAX_AXES,
@@ -65,10 +64,8 @@ typedef struct hairlut_strands {
     float least[HAIRLUT_MAX_PARAMETERS], most[HAIRLUT_MAX_PARAMETERS], standard[HAIRLUT_MAX_PARAMETERS];
     char names[HAIRLUT_MAX_PARAMETERS][HAIRLUT_NAME_SIZE];
     hairlut_scale scales[HAIRLUT_MOST_SCALES];
-    hairlut_node_grid grids[HAIRLUT_MOST_GRIDS];       /* number 0 has no axes */
-    float sign[HAIRLUT_MAX_LOBES];                     /* those of the lobes; of other ones, 0 */
-    int row_count;                                     /* grids of rows */
-    const hairlut_axis *row_axes[HAIRLUT_MOST_TABLES]; /* an axis of each */
+    hairlut_node_grid grids[HAIRLUT_MOST_GRIDS]; /* number 0 has no axes */
+    float sign[HAIRLUT_MAX_LOBES];               /* those of the lobes; of other ones, 0 */
     hairlut_strand_table theta[HAIRLUT_MAX_LOBES], phi[HAIRLUT_MAX_LOBES];
     /* Of the mixture, in fours: that of node p stands as the model's does, (p + 1) * pitch behind it; without axes the pitch is 0, and
      * the only node is the model's itself. */

@@ -155,7 +155,7 @@ float *hairlut_build_parameters(hairlut_strands *strands, const hairlut_model_de
 
 /* ---- tables --------------------------------------------------------------------------------------------------- */
 
-static void build_strand_table(hairlut_strands *strands, const hairlut_axis *axis, hairlut_strand_table *table)
+static void build_strand_table(const hairlut_axis *axis, hairlut_strand_table *table)
 {
     const ptrdiff_t pitch = table->nodes.pitch;
     table->rows = axis->rows + pitch;
@@ -170,17 +170,14 @@ static void build_strand_table(hairlut_strands *strands, const hairlut_axis *axi
     table->groups = axis->columns <= HAIRLUT_FLAT_COLUMNS ? (axis->columns - 2 + 7) / 8 : 0;
     table->grid = axis->grid;
     table->axis = axis;
-    strands->row_axes[axis->grid] = axis;
-    if (axis->grid >= strands->row_count)
-        strands->row_count = axis->grid + 1;
 }
 
 void hairlut_build_strand_tables(hairlut_strands *strands, const hairlut_lobe *lobes, int lobe_count)
 {
     for (int k = 0; k < lobe_count; ++k) {
         strands->sign[k] = lobes[k].sign;
-        build_strand_table(strands, &lobes[k].theta, &strands->theta[k]);
+        build_strand_table(&lobes[k].theta, &strands->theta[k]);
         if (!lobes[k].uniform)
-            build_strand_table(strands, &lobes[k].phi, &strands->phi[k]);
+            build_strand_table(&lobes[k].phi, &strands->phi[k]);
     }
 }

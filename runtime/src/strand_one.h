@@ -38,11 +38,9 @@ static void mix_strand(const hairlut_model *model, const hairlut_corners *corner
 /* All but the direction. */
 HAIRLUT_INLINE void begin_strand(strand *v, const hair *h, const hairlut_corners *corners)
 {
-    const hairlut_strands *strands = h->model->strands;
     v->hair = *h;
     v->corners = corners;
-    for (int g = 0; g < strands->row_count; ++g)
-        v->rows[g] = hairlut_axis_row(strands->row_axes[g], h->theta_r);
+    find_rows(h->model, h->theta_r, v->rows);
 }
 
 HAIRLUT_INLINE void start_search(const strand *v, const hairlut_strand_table *table, hairlut_strand_search *s)

@@ -202,11 +202,25 @@ static void print_nodes(const char *field, const hairlut_nodes *nodes)
     fputs("}, ", stdout);
 }
 
+/* An axis of each grid of rows, as of lobes_NAME. */
+static void print_grids(const char *name, const hairlut_model *model)
+{
+    printf("      .grid_count = %d, .grids = {", model->grid_count);
+    for (int g = 0; g < model->grid_count; ++g) {
+        int k = 0;
+        while (model->grids[g] != &model->lobes[k].theta && model->grids[g] != &model->lobes[k].phi)
+            ++k;
+        printf("%s&lobes_%s[%d].%s", g ? ", " : "", name, k, model->grids[g] == &model->lobes[k].phi ? "phi" : "theta");
+    }
+    puts("},");
+}
+
 static void print_entry(const char *name, const hairlut_model *model)
 {
     const hairlut_mixture *m = &model->mixture;
     printf("    {\"%s\", {.lobe_count = %d, .direct = %d, .multiple = %d, .lobes = lobes_%s,\n", name, model->lobe_count,
            model->direct, model->multiple, name);
+    print_grids(name, model);
     printf("      .mixture = {.fours = array_%d, ", fours_of(model));
     print_nodes("theta_r", &m->theta_r);
     print_nodes("arc", &m->arc);

@@ -124,8 +124,9 @@ LOOP void axis_pdf(const hairlut_model *model, int lobe, int angle, size_t n, co
     const hairlut_axis *a = axis_of(model, lobe, angle);
     for (size_t i = 0; i < n; ++i) {
         const hairlut_row row = hairlut_axis_row(a, theta_r[i]);
-        const hairlut_found one = hairlut_axis_find(a, &row, x[i]), found[4] = {one, one, one, one};
-        const hairlut_inverses inverse = hairlut_invert_four(found);
+        const hairlut_found one = hairlut_axis_find(a, &row, x[i]), two[2] = {one, one};
+        const hairlut_axes axes = hairlut_two_axes(two);
+        const hairlut_inverses inverse = hairlut_invert(&axes);
         pdf[i] = (one.x == x[i] ? hairlut_quad_first(inverse.bend) : 0.0f) / hairlut_quad_first(inverse.root);
     }
 }

@@ -210,6 +210,32 @@ def test_a_faded_lobe_keeps_the_turn_that_it_has_beside():
     assert fitting._led(strong, [(share, turn)], mass).turn == pytest.approx(strayed, abs=0.01)
 
 
+def test_grazing_viewers_have_more_nodes_that_start_from_what_blending_gives():
+    few = np.radians(np.linspace(-89.9, 89.9, 25))
+    more = nodemixture.viewers(few)
+    assert np.isin(few, more).all()
+    assert np.diff(np.degrees(more[abs(more) > np.radians(74)])[:7]).max() < 2.6
+    assert (abs(more) < np.radians(70)).sum() == (abs(few) < np.radians(70)).sum()
+    theta, phi = np.full((8, 2), 1 / 8), np.full((2, 16), 1 / 16)
+    share = np.array([[0.8, 0.2]]), np.array([[0.4, 0.6]])
+    turn = np.array([[3.0, 0.0]]), np.array([[-3.0, 1.0]])
+    low, high = (lobesfit.Row(theta, phi, s, t) for s, t in zip(share, turn, strict=True))
+    between = np.array([False, False, False, True, False])
+    fitting = nodemixture.Fitting(None, [], np.array([-1.0, 0.0, 1.2, 1.3, 1.4]), np.zeros(1), True, between)
+    assert fitting._order() == [2, 1, 0, 4, 3]
+    rows = {0: high, 1: low, 2: low, 4: high}
+    assert fitting._before(rows, 2) is None
+    assert fitting._before(rows, 4) is low
+    assert fitting._before(rows, 0) is low
+    blended = fitting._blended(rows, 3)
+    assert blended["share"] == pytest.approx(np.array([[0.6, 0.4]]))
+    assert np.cos(blended["turn"]) == pytest.approx(np.cos([[np.pi, 0.5]]))
+    mass = np.full((1, 8, 16), 1 / 128)
+    assert nodemixture._better(low, high, mass) is low
+    peak = lobesfit.Row(theta, np.eye(16)[:2] * 0.9 + 0.1 / 16, share[0], turn[0])
+    assert nodemixture._better(peak, low, mass) is low
+
+
 GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
 
 

@@ -275,7 +275,7 @@ def _fit_once(
         lobes,
         start,
         axes,
-        start.theta_r,
+        nodemixture.viewers(start.theta_r),
         angle,
         allowed,
         room,

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import pairwise, product
 from time import perf_counter
 
 import numpy as np
@@ -42,6 +42,9 @@ WORST = 3.0  # times the mean that may be lost at one theta_r
 FADED = 0.25
 """Part of its share beside below which a lobe takes its turn from there: on its own it would turn to where
 another lobe's tails lack light, and between the two it would be turned away from its own."""
+STEEP, STEP = np.radians(74.0), np.radians(2.5)
+"""theta_r beyond which Fresnel's reflectance makes shares and turns steep, and about how far nodes are apart
+there."""
 SIZE_PART, THINNED = 0.5, 3
 """Of the textures' size that the mixture may take, about, and how much smaller fewer theta_r and offsets make
 it."""
@@ -58,11 +61,21 @@ class Mixed:
 
 
 class Fitting:
-    """Fits shares and turns at places, for theta_r (J,) and the angles (N,) of offsets."""
+    """Fits shares and turns at places, for theta_r (J,) and the angles (N,) of offsets. between (J,): which
+    theta_r start from what blending gives there, and keep it where it is good enough."""
 
-    def __init__(self, box: Box, lobes: list[BakedLobe], theta_r: Array, angle: Array, turning: bool):
+    def __init__(
+        self,
+        box: Box,
+        lobes: list[BakedLobe],
+        theta_r: Array,
+        angle: Array,
+        turning: bool,
+        between: Array | None = None,
+    ):
         self._box, self._lobes, self._theta_r, self._angle = box, lobes, theta_r, angle
         self._turning = turning
+        self._between = np.zeros(len(theta_r), bool) if between is None else between
         self._known: dict[Place, Mixed] = {}
 
     @property
@@ -90,13 +103,18 @@ class Fitting:
         lobes = [BakedLobe(x.name, x.theta.at(named), x.phi and x.phi.at(named)) for x in self._lobes]
         rows: dict[int, Row] = {}
         variance = np.zeros(len(self._theta_r))
-        for j in sorted(range(len(variance)), key=lambda j: abs(j - len(variance) // 2)):
-            theta_r, before = self._theta_r[j], rows.get(j - int(np.sign(j - len(variance) // 2)))
+        for j in self._order():
+            theta_r, before = self._theta_r[j], self._before(rows, j)
             mass = cells.of_density(density, self._theta_r[[j]], offset, edges[[j]], m).mass[0]
             parts = [nodetables.masses(x, theta_r, edges[j], m) for x in lobes]
             theta, phi = np.stack([a for a, _ in parts], axis=1), np.stack([b for _, b in parts])
             row = Row(theta, phi, start.share[j], start.turn[j])
-            if not fixed:
+            if not fixed and self._between[j]:
+                blend = replace(row, **self._blended(rows, j))
+                for begin in (blend, row):
+                    blend = _better(blend, same_shapes(begin, mass, self._angle, self._turning), mass)
+                row = blend
+            elif not fixed:
                 row = self._steadier(same_shapes(row, mass, self._angle, self._turning), before, mass)
                 if self._turning:
                     beside = [(start.share[j], start.turn[j])]
@@ -108,6 +126,26 @@ class Fitting:
             np.stack([rows[j].turn for j in range(len(rows))]),
             variance,
         )
+
+    def _order(self) -> list[int]:
+        """The numbers of theta_r from the middle outwards, those between others last."""
+        count = len(self._theta_r)
+        return sorted(range(count), key=lambda j: (bool(self._between[j]), abs(j - count // 2)))
+
+    def _before(self, rows: Mapping[int, Row], j: int) -> Row | None:
+        """The row next to one on the side of the middle."""
+        middle = len(self._theta_r) // 2
+        inwards = range(j - 1, middle - 1, -1) if j > middle else range(j + 1, middle + 1)
+        return next((rows[i] for i in inwards if i in rows), None)
+
+    def _blended(self, rows: Mapping[int, Row], j: int) -> dict[str, Array]:
+        """Shares and turns between those of the next rows that are known on both sides."""
+        low = max(i for i in range(j) if not self._between[i])
+        high = min(i for i in range(j, len(self._theta_r)) if not self._between[i])
+        t = (self._theta_r[j] - self._theta_r[low]) / (self._theta_r[high] - self._theta_r[low])
+        a, b = rows[low], rows[high]
+        share, turn = (1 - t) * a.share + t * b.share, a.turn + t * wrap(b.turn - a.turn)
+        return {"share": share.astype(a.share.dtype), "turn": turn.astype(a.turn.dtype)}
 
     def _steadier(self, row: Row, before: Row | None, mass: Array) -> Row:
         """The row, or one with the shares and turns of the row before it, nearer to the middle, as a start,
@@ -132,7 +170,12 @@ class Fitting:
             return row
         led = replace(row, turn=turn.astype(row.turn.dtype))
         led = improved(led, mass, self._angle, SHARES, False, shapes=False, largest=MENDED)
-        return led if led.variance(mass) < UNSURE * row.variance(mass) + SURE else row
+        return _better(led, row, mass)
+
+
+def _better(steady: Row, other: Row, mass: Array) -> Row:
+    """A row that is steady, unless another one is much better."""
+    return steady if steady.variance(mass) < UNSURE * other.variance(mass) + SURE else other
 
 
 def _unsteady(row: Row, mass: Array, angle: Array) -> float:
@@ -160,6 +203,17 @@ def _along(nodes_at: Array, values: Array, at: Array, axis: int) -> Array:
     t = np.expand_dims(x - i, tuple(range(1, values.ndim - axis)))
     after = np.minimum(i + 1, len(nodes_at) - 1)
     return (1 - t) * np.take(values, i, axis) + t * np.take(values, after, axis)
+
+
+def viewers(theta_r: Array) -> Array:
+    """The nodes (J,) of theta_r at which shares and turns are fitted: those of tables, and more beyond STEEP,
+    where they change fast."""
+    found = [theta_r[:1]]
+    for low, high in pairwise(theta_r):
+        steep = (abs(np.array([low, high])) > STEEP).all()
+        parts = max(1, round((high - low) / STEP)) if steep else 1
+        found.append(np.append(np.linspace(low, high, parts + 1)[1:-1], high))
+    return np.concatenate(found)
 
 
 def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tuple[int, ...]:
@@ -201,7 +255,8 @@ def mixture(
     """The mixture of baked lobes over the parameters axes, with as many nodes as size, bytes of all textures,
     and last, the time by perf_counter when it should be done, allow."""
     anchor = start.places[0]
-    fitting = Fitting(box, lobes, theta_r, angle, start.turning)
+    between = ~np.isin(theta_r, start.theta_r)
+    fitting = Fitting(box, lobes, theta_r, angle, start.turning, between)
     began = perf_counter()
     first = fitting.at(anchor, of_shapes(start, theta_r, angle))
     bend, kept = _bends(lobes), {}

@@ -120,6 +120,32 @@ def test_a_narrow_highlight_keeps_to_the_size_and_is_warned_of(tmp_path, capsys)
     )
 
 
+def test_a_mixture_of_five_parameters_gets_axes_of_the_four_that_matter_most(tmp_path, capsys):
+    (tmp_path / "hair.py").write_text(
+        "import numpy as np\n"
+        "PARAMETERS = {name: (0.0, 1.0) for name in 'abcde'}\n"
+        "def bsdf(theta_r, theta_i, phi, a, b, c, d, e):\n"
+        "    mix = 0.1 + 0.18 * (a + b + 0.4 * c + d + e)\n"
+        "    narrow, broad = (np.exp(-0.5 * ((theta_i + theta_r) / s) ** 2) / s for s in (0.2, 0.6))\n"
+        "    return mix * narrow * (1 + 0.9 * np.cos(phi)) + (1 - mix) * broad * (1 - 0.9 * np.cos(phi))\n"
+    )
+    fit = [
+        "fit",
+        str(tmp_path / "hair.py"),
+        "--out",
+        str(tmp_path),
+        "--json",
+        "--budget",
+        "1",
+        "--lobes",
+        "2",
+    ]
+    assert cli.main(fit) == 0
+    captured = capsys.readouterr()
+    assert list(json.loads(captured.out)["axes"]["mixture"]) == ["a", "b", "d", "e"]
+    assert "those of c = 0.5 at all its values" in captured.err
+
+
 def test_fewer_nodes_where_tables_are_wide_or_time_is_short(monkeypatch):
     def along(box, found, allowed, report):
         count = max(2, round(64 * (0.01 / allowed["a"]) ** 0.25))

@@ -22,7 +22,7 @@ from ...model import BakedModel
 from .. import cells, effort
 from ..refine import HEAVIEST, LARGEST_STEP, SHARE_OF_AXIS, TABLE_PART, WEIGHT_PARTS, stored
 from . import dependence, firstround, losses, nodemixture, nodeshapes, nodetables, shapes
-from .box import Box, Place
+from .box import Box, Place, with_value
 from .dependence import Dependence
 from .firstround import BoxEffort
 from .losses import Measured
@@ -48,8 +48,8 @@ class FittedBox:
     allowed: V that each axis might cost; reach: V that so many lobes have on the cells they were fitted to;
     measured: V and weights at random places; edges: the same at corners of the box and at grazing viewers;
     lost: V that each axis costs (losses.py); lost_at_worst: the same at the worst place of all; taken: bytes
-    of the textures; too_large: whether these are more than allowed; out_of_time: whether finer axes were not
-    tried for want of time."""
+    of the textures; too_large: whether these are more than allowed; left_out: numbers of the parameters for
+    which the mixture has no axis left; out_of_time: whether finer axes were not tried for want of time."""
 
     box: Box
     model: BakedModel
@@ -62,6 +62,7 @@ class FittedBox:
     lost_at_worst: dict[str, float]
     taken: int
     too_large: bool
+    left_out: tuple[int, ...]
     out_of_time: bool = False
 
 
@@ -267,13 +268,17 @@ def _fit_once(
     reach = float(np.mean([one.variance() for one in (*theta.at.values(), *phi.at.values())]))
     report("baking", 0.0)
     ease, lobes = 1.0, nodetables.lobes(box, name, theta, phi, TABLE_PART * tolerance, 1.0)
-    axes = nodemixture.depends(box, lobes, start, SHARE_OF_AXIS * tolerance)
-    _check_axes(box, axes, "shares and turns")
+    without = nodemixture.depends(box, lobes, start, SHARE_OF_AXIS * tolerance)
+    axes = tuple(sorted(sorted(without, key=without.__getitem__)[-MAX_AXES:]))
+    place, left_out = start.places[0], tuple(p for p in without if p not in axes)
+    for p in left_out:
+        place = with_value(place, p, box.standard[p])
     angle = box.hair.angles(counts["offset"])
     mixture = nodemixture.mixture(
         box,
         lobes,
         start,
+        place,
         axes,
         nodemixture.viewers(start.theta_r),
         angle,
@@ -300,5 +305,5 @@ def _fit_once(
     if not np.isfinite(measured.variance).all():
         raise HairlutError("the fit has numbers that are not finite")
     return FittedBox(
-        box, model, counts, allowed, reach, measured, edges, lost, at_worst, taken, too_large=taken > size
+        box, model, counts, allowed, reach, measured, edges, lost, at_worst, taken, taken > size, left_out
     )

@@ -216,17 +216,18 @@ def viewers(theta_r: Array) -> Array:
     return np.concatenate(found)
 
 
-def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tuple[int, ...]:
-    """The parameters on which shares or turns depend, along each from the anchor."""
+def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> dict[int, float]:
+    """The parameters on which shares or turns depend, along each from the anchor, and V that each costs a
+    mixture without its axis."""
     anchor = start.places[0]
     low, high = box.hair.theta_r
     theta_r = (low + high) / 2 + VIEWERS * (high - low) / 2
     angle = box.hair.angles(min(FEW_OFFSETS, box.effort.offset))
     fitting = Fitting(box, lobes, theta_r, angle, start.turning)
     first = fitting.at(anchor, of_shapes(start, theta_r, angle))
-    found = []
+    found = {}
     for p in range(len(box.parameters)):
-        values = box.steps(p, 5, anchor[p])
+        values, lost = box.steps(p, 5, anchor[p]), 0.0
 
         def beside(one: Mixed, value: float, p=p) -> Mixed:
             return fitting.at(with_value(anchor, p, value), one)
@@ -234,16 +235,17 @@ def depends(box: Box, lobes: list[BakedLobe], start: Shapes, slack: float) -> tu
         along = nodes.outwards(values, anchor[p], first, beside)
         for value, here in zip(values, along, strict=True):
             same = fitting.fixed(with_value(anchor, p, float(value)), first)
-            if ((same.variance - UNSURE * here.variance) / GRAZING).max() > slack:
-                found.append(p)
-                break
-    return tuple(found)
+            lost = max(lost, ((same.variance - UNSURE * here.variance) / GRAZING).max())
+        if lost > slack:
+            found[p] = lost
+    return found
 
 
 def mixture(
     box: Box,
     lobes: list[BakedLobe],
     start: Shapes,
+    anchor: Place,
     axes: tuple[int, ...],
     theta_r: Array,
     angle: Array,
@@ -252,9 +254,8 @@ def mixture(
     last: float,
     report: Callable[[float], None],
 ) -> Mixture:
-    """The mixture of baked lobes over the parameters axes, with as many nodes as size, bytes of all textures,
-    and last, the time by perf_counter when it should be done, allow."""
-    anchor = start.places[0]
+    """The mixture of baked lobes over the parameters axes, the others as at the anchor, with as many nodes as
+    size, bytes of all textures, and last, the time by perf_counter when it should be done, allow."""
     between = ~np.isin(theta_r, start.theta_r)
     fitting = Fitting(box, lobes, theta_r, angle, start.turning, between)
     began = perf_counter()

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
+from ...axes import MAX_AXES
 from ...lobes import Array
 from ...model import BakedModel
 from ..summary import QUANTILE, lobes_text
@@ -121,20 +122,28 @@ def text(found: FittedBox, tolerance: float) -> str:
 
 
 def warnings(found: FittedBox) -> list[str]:
-    """A warning of the worst place, where that is bad."""
+    """Warnings of parameters without an axis, and of the worst place, where that is bad."""
+    warned = []
+    for p in found.left_out:
+        parameter = found.box.parameters[p]
+        warned.append(
+            f"shares and turns depend on more parameters than the {MAX_AXES} a texture may have: they are "
+            f"those of {parameter.name} = {parameter.standard:g} at all its values"
+        )
     everywhere = losses.joined(found.measured, found.edges)
     v, weight = everywhere.variance.mean(axis=1), everywhere.weight.max(axis=1)
     if v.max() <= FEW and weight.max() <= FIREFLY:
-        return []
+        return warned
     worst = int((v / FEW if v.max() > FEW else weight).argmax())
     at = ", ".join(f"{name} = {x:.4g}" for name, x in found.box.named(everywhere.parameters[worst]).items())
     axis, lost = max(found.lost_at_worst.items(), key=lambda one: one[1])
     why = f": the nodes of {axis} are too far apart there" if lost > v.max() / 2 > FEW / 2 else ""
     bad = int(((v > FEW) | (weight > FIREFLY)).sum())
     return [
+        *warned,
         f"at {bad} of {len(v)} places V is above {FEW:g} or a weight above {FIREFLY:g}: V is {v[worst]:.3g} "
         f"and the largest weight {weight[worst]:.3g} at {at}, theta_r = "
-        f"{np.degrees(everywhere.theta_r[worst]):.3g} deg{why}"
+        f"{np.degrees(everywhere.theta_r[worst]):.3g} deg{why}",
     ]
 
 

@@ -103,10 +103,19 @@ typedef struct hair {
     int known;
 } hair;
 
+/* Whether an azimuth need not be wrapped; not if it is NaN. */
+static inline int in_range(float phi)
+{
+    return phi >= -hairlut_pi && phi < -hairlut_pi + hairlut_two_pi;
+}
+
 HAIRLUT_INLINE hair hair_of(const hairlut_model *model, const hairlut_mix *mix, float theta_r, float phi_r, float offset)
 {
-    const hair h = {model, mix, theta_r, hairlut_wrap(phi_r, -hairlut_pi),
-                    hairlut_known(theta_r, phi_r, offset, 0.0f) && mix->sum > 0.0f};
+    hair h = {model, mix, theta_r, phi_r, !isunordered(theta_r, offset) && mix->sum > 0.0f};
+    if (HAIRLUT_MOSTLY(in_range(phi_r)))
+        return h;
+    h.r = hairlut_wrap(phi_r, -hairlut_pi);
+    h.known = h.known && hairlut_is_finite(phi_r);
     return h;
 }
 
@@ -158,9 +167,14 @@ HAIRLUT_INLINE hairlut_sample sample_of_hair(const hair *h, float u_lobe, float 
 
 HAIRLUT_INLINE float pdf_of_hair(const hair *h, float theta_i, float phi_i)
 {
-    if (!h->known || !hairlut_known(theta_i, phi_i, 0.0f, 0.0f))
+    direction d = {h->theta_r, h->r, theta_i, phi_i};
+    if (!h->known || theta_i != theta_i)
         return 0.0f;
-    const direction d = {h->theta_r, h->r, theta_i, hairlut_wrap(phi_i, -hairlut_pi)};
+    if (!HAIRLUT_MOSTLY(in_range(phi_i))) {
+        if (!hairlut_is_finite(phi_i))
+            return 0.0f;
+        d.i = hairlut_wrap(phi_i, -hairlut_pi);
+    }
     if (!two_on_a_grid(h))
         return mixed(h->model, h->mix, &d, h->mix->count, 0.0f);
     const hairlut_row row = hairlut_axis_row(h->model->grids[0], h->theta_r);

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "calls.h"
+#include "floor.h"
 #include "inputs.h"
 #include "warps.h"
 
@@ -113,6 +114,61 @@ void add_rivals()
     }
 }
 
+bool same(hairlut_sample a, hairlut_sample b)
+{
+    return a.theta_i == b.theta_i && a.phi_i == b.phi_i && a.pdf_angle == b.pdf_angle &&
+           a.pdf_solid_angle == b.pdf_solid_angle;
+}
+
+// Ends the program where its numbers are not the library's, to the bit: it would be the floor of something else.
+void check_floor(const bench_floor &floor, const hairlut_model &fitted)
+{
+    const bench::Inputs inputs(3);
+    const rival_arrays &all = inputs.view();
+    for (size_t i = 0; i < all.n; ++i) {
+        const float theta_r = all.theta_r[i], phi_r = all.phi_r[i], theta = all.theta_light[i], phi = all.phi_light[i];
+        if (floor.pdf(theta_r, phi_r, theta, phi) != hairlut_pdf_hair(&fitted, nullptr, theta_r, phi_r, 0.0f, theta, phi) ||
+            !same(
+                floor.sample(theta_r, phi_r, all.u_lobe[i], all.u_theta[i], all.u_phi[i]),
+                hairlut_sample_hair(&fitted, nullptr, theta_r, phi_r, 0.0f, all.u_lobe[i], all.u_theta[i], all.u_phi[i]))) {
+            std::fprintf(stderr, "floor.c: its numbers are not those of the library\n");
+            std::exit(1);
+        }
+    }
+}
+
+void add_floor(const hairlut_model &fitted)
+{
+    const bench_floor *const floor = bench_floor_of(&fitted);
+    if (!floor)
+        return;
+    check_floor(*floor, fitted);
+    const auto sample = [floor](const rival_arrays &all, size_t i) {
+        const hairlut_sample s = floor->sample(all.theta_r[i], all.phi_r[i], all.u_lobe[i], all.u_theta[i], all.u_phi[i]);
+        all.theta_i[i] = s.theta_i;
+        all.phi_i[i] = s.phi_i;
+        all.pdf_angle[i] = s.pdf_angle;
+        all.pdf_solid_angle[i] = s.pdf_solid_angle;
+    };
+    const auto pdf = [floor](const rival_arrays &all, size_t i) {
+        all.pdf_light[i] = floor->pdf(all.theta_r[i], all.phi_r[i], all.theta_light[i], all.phi_light[i]);
+    };
+    add("fitted/sample_hair/floor/one", [sample](const rival_arrays &all) {
+        for (size_t i = 0; i < all.n; ++i)
+            sample(all, i);
+    });
+    add("fitted/pdf_hair/floor/one", [pdf](const rival_arrays &all) {
+        for (size_t i = 0; i < all.n; ++i)
+            pdf(all, i);
+    });
+    add("fitted/vertex/floor/one", [sample, pdf](const rival_arrays &all) {
+        for (size_t i = 0; i < all.n; ++i) {
+            sample(all, i);
+            pdf(all, i);
+        }
+    });
+}
+
 void add_warps(const std::string &how, const bench_warp *warps)
 {
     for (int i = 0; i < BENCH_WARPS; ++i)
@@ -204,6 +260,8 @@ int main(int argc, char **argv)
         return 2;
     for (const auto &[name, model] : models(directory))
         add_model(name, *model);
+    if (const hairlut_model *fitted = hairlut_builtin("fitted"))
+        add_floor(*fitted);
     add_rivals();
     add_warps("one", bench_warps_scalar);
     add_warps("arrays", bench_warps_vector);

@@ -207,6 +207,10 @@ both densities.
   choose where a closed form matters.
 - *Box-Muller with rejection*: with the hybrid's rows; its density of a given direction is the hybrid's.
 - *SLEEF*, *Boost.Math*, *MKL*: the closed form with their erf, and Boost's and MKL's inverse.
+- *the same tables, with constants*: no rival but a bound, [floor.c](../../bench/floor.c), with AVX2:
+  hairlut's own steps, written for the three tables of `fitted` alone: no list of lobes, no mixture, no
+  choice of kernels, no test for NaN. It draws the same bits. What hairlut takes more is the price of
+  taking any hair; where this is slower than a target asks for, tables of these cells cannot meet it.
 - *Chiang 2016, its own sampler*: the BSDF that `brown` is fitted to, with the sampler that its authors
   derived, written from the paper, for a single channel of absorption.
 

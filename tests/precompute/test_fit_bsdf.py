@@ -164,6 +164,28 @@ def test_losses_are_measured_between_all_offsets(monkeypatch):
         assert np.unique(seen[-1]) == pytest.approx(np.sin((angle[1:] + angle[:-1]) / 2))
 
 
+def test_rounds_are_compared_at_the_same_places_and_promised_at_others(monkeypatch):
+    given = hair.of_density(
+        lambda theta_r, theta_i, phi, offset: np.exp(-8 * (theta_i + theta_r) ** 2 + np.cos(phi)), False
+    )
+    monkeypatch.setattr(refine, "limits", lambda found, tolerance: ["theta_r"])
+    monkeypatch.setattr(refine, "_standing_out", lambda found, tolerance: {"theta_r": 1.5})
+    monkeypatch.setitem(refine.LIMITS, "theta_r", 61)
+    rounds, once = [], refine._fit_once
+
+    def recorded(*given):
+        rounds.append(once(*given))
+        return rounds[-1]
+
+    monkeypatch.setattr(refine, "_fit_once", recorded)
+    found = refine.fit(given, "hair", 0.01, 1, 60.0, lambda stage, share: None)
+    first, *more = [one.promised.theta_r for one in rounds]
+    assert more
+    assert all((theta_r == first).all() for theta_r in more)
+    assert found.repeats > 1
+    assert not np.isin(first, found.promised.theta_r).any()
+
+
 def test_a_far_field_hair_takes_several_lobes_without_turns(tmp_path, capsys):
     path = fitted(tmp_path, FAR)
     model, reported, _ = run(path, tmp_path / "out", capsys)

@@ -11,7 +11,7 @@ import pytest
 from hairlut import cli, exr
 from hairlut.axes import Parameter
 from hairlut.fit import hair, lobesfit, turning
-from hairlut.fit.strands import box, losses, nodemixture, nodes, nodeshapes, shapes, tied
+from hairlut.fit.strands import box, losses, nodemixture, nodes, nodeshapes, shapes, summary, tied
 
 HAIR = """
 import numpy as np
@@ -118,6 +118,30 @@ def test_a_narrow_highlight_keeps_to_the_size_and_is_warned_of(tmp_path, capsys)
     assert any(
         f"the nodes of {axis} are too far" in captured.err for axis in place["relative_variance_by_axis"]
     )
+
+
+def test_what_limits_a_fit_is_told_from_what_is_met():
+    def verdict(v, weight, edge=0.0, **given):
+        def places(value):
+            value = np.full((50, 1), value)
+            at = np.linspace(0, 1, 50)
+            return losses.Measured(
+                at[:, None], at, value, value, np.where(at > 0.79, weight, 1)[:, None], value
+            )
+
+        given = {"too_large": False, "out_of_time": False, "lost": {"a": 0.0}, **given}
+        hairs = box.Box(None, (Parameter("a", 0, 1, 0),), None)
+        found = SimpleNamespace(measured=places(v), edges=places(edge), box=hairs, reach=0.0, model=None)
+        found.__dict__.update(given, lost_at_worst={"a": 0.0, "theta_r": edge})
+        found.model = SimpleNamespace(lobes=[1, 2])
+        return summary._verdict(found, 0.1)
+
+    assert verdict(0.09, 9) == "meets the tolerance: within 0.1 of what 2 lobes can reach"
+    assert verdict(0.2, 9, lost={"a": 0.15}) == "stops short of the tolerance 0.1; what limits it: a"
+    but = "V is within the tolerance 0.1, but weights are large, or corners and grazing viewers lose more; "
+    assert verdict(0.09, 90, lost={"a": 0.05}, out_of_time=True) == f"{but}what limits it: a, budget"
+    assert verdict(0.09, 9, edge=0.6) == f"{but}what limits it: theta_r"
+    assert verdict(0.09, 9, too_large=True).endswith("but the textures take more than --size")
 
 
 def test_a_mixture_of_five_parameters_gets_axes_of_the_four_that_matter_most(tmp_path, capsys):

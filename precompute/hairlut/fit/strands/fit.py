@@ -124,14 +124,22 @@ def _effort(box: Box, budget: float) -> BoxEffort:
 
 
 def limits(found: FittedBox, tolerance: float) -> list[str]:
-    """What keeps a fit from the tolerance, or nothing: names of parameters and axes, "size", "budget"; or
-    where the worst places are."""
-    v, weight = found.measured.variance.mean(axis=1), found.measured.weight
-    near = v.mean() <= found.reach + tolerance and np.quantile(v, 0.99) <= found.reach + RARE * tolerance
+    """What keeps a fit from the tolerance, or from weights that are no fireflies, or nothing: names of
+    parameters and axes, "size", "budget"; or where the worst places are."""
     size, budget = ["size"] * found.too_large, ["budget"] * found.out_of_time
-    if near and np.quantile(weight, 0.99) <= HEAVIEST and not _bad_edges(found, tolerance):
+    near, heavy = near_enough(found, tolerance), np.quantile(found.measured.weight, 0.99) > HEAVIEST
+    if near and not heavy and not _bad_edges(found, tolerance):
         return size
-    return [*_standing_out(found, tolerance), *size, *budget] or [_worst_band(found)]
+    worst = found.measured.weight.max(axis=1) if near else found.measured.variance.mean(axis=1)
+    return [*_standing_out(found, tolerance), *size, *budget] or [_worst_band(found, worst)]
+
+
+def near_enough(found: FittedBox, tolerance: float) -> bool:
+    """Whether V at random places is as near as the tolerance to what so many lobes reach."""
+    v = found.measured.variance.mean(axis=1)
+    return bool(
+        v.mean() <= found.reach + tolerance and np.quantile(v, 0.99) <= found.reach + RARE * tolerance
+    )
 
 
 def _bad_edges(found: FittedBox, tolerance: float) -> bool:
@@ -140,17 +148,17 @@ def _bad_edges(found: FittedBox, tolerance: float) -> bool:
     return bool(v.mean() > found.reach + RARE * tolerance or np.quantile(weight, COMMON) > HEAVIEST)
 
 
-def _worst_band(found: FittedBox) -> str:
-    """The part of a coordinate's range that loses most, in words."""
-    v, at = found.measured.variance.mean(axis=1), found.measured
+def _worst_band(found: FittedBox, values: Array) -> str:
+    """The part of a coordinate's range where values of the places are largest, in words."""
+    at = found.measured
     coordinates = {p.name: at.parameters[:, i] for i, p in enumerate(found.box.parameters)}
     coordinates["theta_r_deg"] = np.degrees(at.theta_r)
     bands = []
-    for name, values in coordinates.items():
-        edges = np.linspace(values.min(), values.max(), BANDS + 1)
-        band = np.clip(np.digitize(values, edges) - 1, 0, BANDS - 1)
+    for name, x in coordinates.items():
+        edges = np.linspace(x.min(), x.max(), BANDS + 1)
+        band = np.clip(np.digitize(x, edges) - 1, 0, BANDS - 1)
         for b in np.unique(band):
-            bands.append((v[band == b].mean(), f"{name} from {edges[b]:.3g} to {edges[b + 1]:.3g}"))
+            bands.append((values[band == b].mean(), f"{name} from {edges[b]:.3g} to {edges[b + 1]:.3g}"))
     return max(bands)[1]
 
 

@@ -12,7 +12,7 @@ from ...lobes import Array
 from ...model import BakedModel
 from ..summary import QUANTILE, lobes_text
 from . import losses
-from .fit import FittedBox, limits
+from .fit import FittedBox, limits, near_enough
 
 BANDS = 5  # of a parameter in the text
 FEW, FIREFLY = 0.5, 100.0  # V and a weight above which a place is warned of
@@ -162,7 +162,15 @@ def _verdict(found: FittedBox, tolerance: float) -> str:
     if not what:
         best = lobes_text(len(found.model.lobes))
         return f"meets the tolerance: within {tolerance:g} of what {best} can reach"
-    return f"stops short of the tolerance {tolerance:g}; what limits it: {', '.join(what)}"
+    if not near_enough(found, tolerance):
+        return f"stops short of the tolerance {tolerance:g}; what limits it: {', '.join(what)}"
+    met = f"V is within the tolerance {tolerance:g}"
+    if what == ["size"]:
+        return f"{met}, but the textures take more than --size"
+    return (
+        f"{met}, but weights are large, or corners and grazing viewers lose more; "
+        f"what limits it: {', '.join(what)}"
+    )
 
 
 def with_errors(found: FittedBox) -> BakedModel:

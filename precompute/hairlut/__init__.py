@@ -14,7 +14,7 @@ table on the axis of the cumulative probability, interpolant is the rule by whic
 analytic the closed form against which all of it is tested.
 """
 
-__version__ = "2.2.0"
+__version__ = "2.3.0"
 
 __all__ = ["HairlutError", "Model", "Sample", "builtin", "load"]
 

@@ -28,6 +28,14 @@ def replace_whole(path: Path, write: Callable[[Path], None]) -> Path:
     return path
 
 
+def check_folder(path: Path) -> None:
+    """HairlutError if files in the folder at path, which need not exist yet, could not be written."""
+    there = next(folder for folder in (path, *path.absolute().parents) if folder.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        why = "may not be written to" if there.is_dir() else "is not a directory"
+        raise HairlutError(f"{path}: cannot be written: {there} {why}: name another folder")
+
+
 def write_whole(path: Path, data: bytes) -> Path:
     """Writes data to path in one step."""
     return replace_whole(path, lambda temporary: temporary.write_bytes(data))

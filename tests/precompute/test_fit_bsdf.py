@@ -206,6 +206,14 @@ def test_a_function_that_selects_elements_gets_full_arrays(tmp_path, capsys):
     assert reported["relative_variance"] < 0.01
 
 
+def test_a_function_may_change_its_arguments_in_place(tmp_path, capsys):
+    found = []
+    for shifted in ("phi = phi - 0.7", "phi -= 0.7"):
+        text = FAR.replace("    return (", f"    {shifted}\n    return (")
+        found.append(run(fitted(tmp_path, text), tmp_path / "out", capsys, "--lobes", "2")[1])
+    assert found[1]["relative_variance"] == pytest.approx(found[0]["relative_variance"])
+
+
 def test_the_number_of_lobes_can_be_fixed(tmp_path, capsys):
     model, reported, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys, "--lobes", "1")
     assert reported["lobes"] == len(model.lobes) == 1
@@ -263,6 +271,8 @@ def bsdf(theta_r, theta_i, phi):
     [
         ("def bsdf(theta_r, theta_i):\n    return 1.0\n", "expected a function bsdf(theta_r, theta_i, phi)"),
         ("f = 1\n", "has no bsdf"),
+        ("LOBES = ()\n", "it defines LOBES: hairlut bake --model"),
+        ("def bsdf(theta_r, theta_i, phi):\n    pass\n", "bsdf returned None: expected real numbers"),
         ("def bsdf(theta_r, theta_i, phi):\n    return theta_i\n", "expected a finite number, 0 or more"),
         ("def bsdf(theta_r, theta_i, phi):\n    return [1.0, 2.0, 3.0]\n", "returned the shape"),
         ("import sys\nsys.exit()\n", "hair.py:2: calls sys.exit()"),
@@ -304,6 +314,8 @@ def test_a_file_that_asks_shows_no_prompt(tmp_path, capsys):
         ("--lobes", "9"),
         ("--lobes", "0"),
         ("--name", "a/b"),
+        ("--name", "h\u00e4r"),
+        ("--name", "x" * 64),
         ("--plot", "x.exe"),
         ("--tolerance", "0"),
         ("--budget", "nan"),
@@ -313,6 +325,14 @@ def test_options_that_make_no_sense_are_refused(tmp_path, capsys, options):
     path = fitted(tmp_path, FAR)
     assert cli.main(["fit", str(path), "--out", str(tmp_path / "out"), *options]) == cli.WRONG_USE
     assert options[0] in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_fit(tmp_path, capsys, monkeypatch):
+    path = fitted(tmp_path, FAR)
+    monkeypatch.setattr(refine, "fit", lambda *given: pytest.fail("fitted first"))
+    for options in (("--out", str(path)), ("--out", str(tmp_path), "--plot", str(path / "a.png"))):
+        assert cli.main(["fit", str(path), *options]) == cli.WRONG_USE
+        assert f"cannot be written: {path} is not a directory" in capsys.readouterr().err
 
 
 def test_the_example_from_the_paper_scatters_what_it_says():

@@ -311,6 +311,18 @@ GOOD = "def bsdf(theta_r, theta_i, phi, a):\n    return 1.0 + a\n"
             "PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, theta_i, phi, offset, a, b):\n    return 1.0\n",
             "takes b, which PARAMETERS does not name",
         ),
+        (
+            "PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, theta_i, phi, a, b):\n    return 1.0\n",
+            "takes b, which PARAMETERS does not name",
+        ),
+        (
+            "PARAMETERS = {'a': (0, 1)}\ndef bsdf(theta_r, theta_i, phi, a):\n    return 1 / (1 - a)\n",
+            "hair.py:3: ZeroDivisionError: float division by zero: at a = 1",
+        ),
+        (
+            "PARAMETERS = {'a': (0, 1)}\n" + GOOD.replace("1.0 + a", "[1.0, 2.0, 3.0]"),
+            "as its arguments, a = ",
+        ),
         ("PARAMETERS = {'a': (0, 1), 'a': (0, 2)}\n" + GOOD, "PARAMETERS has 'a' twice: expected each"),
         (
             "PARAMETERS = {'a': (0, 1)}\n" + GOOD.replace("a)", "a, /)", 1),

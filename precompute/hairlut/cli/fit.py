@@ -4,6 +4,7 @@
 import argparse
 import json
 import math
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,6 +12,7 @@ from pathlib import Path
 from time import perf_counter
 
 from ..errors import HairlutError
+from ..files import check_folder
 from . import OK, add_command
 
 DEFAULT_TOLERANCE = 0.01
@@ -110,6 +112,9 @@ def run(args: argparse.Namespace) -> int:
     from rich.progress import Progress
 
     name = _checked(args)
+    check_folder(args.out / name)
+    if args.plot:
+        check_folder(args.plot.parent)
     start = perf_counter()
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
@@ -233,9 +238,14 @@ def _plot(path: Path, drawn: Callable[[str], bytes]) -> None:
 
 def _checked(args: argparse.Namespace) -> str:
     """The model's name; HairlutError for options that make no sense."""
+    from ..exrfile import MODEL_NAME
+
     name = args.data.stem if args.name is None else args.name
     if not name or Path(name).name != name or name.startswith((".", "-")):
         raise HairlutError(f"--name {name}: expected the name of a directory")
+    if not re.fullmatch(MODEL_NAME, name):
+        given = f"--name {name}" if args.name else f"{args.data}: a model takes its file's name"
+        raise HairlutError(f"{given}: expected 1 to 63 printable ASCII characters: give it by --name")
     for option in ("tolerance", "budget", "size"):
         value = getattr(args, option)
         if value is not None and not (math.isfinite(value) and value > 0):

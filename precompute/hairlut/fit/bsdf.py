@@ -61,7 +61,8 @@ def load(path: Path) -> Bsdf:
     module = run_file(path).module
     function = getattr(module, "bsdf", None)
     if not callable(function):
-        raise HairlutError(f"{path}: has no bsdf: {EXPECTED}")
+        other = f"; it defines LOBES: hairlut bake --model {path}" if hasattr(module, "LOBES") else ""
+        raise HairlutError(f"{path}: has no bsdf: {EXPECTED}{other}")
     for name in vars(module):
         if name != "PARAMETERS" and name.upper() == "PARAMETERS":
             raise HairlutError(f"{path}: defines {name}: name it PARAMETERS, {EXPECTED_PARAMETERS}")
@@ -72,8 +73,8 @@ def load(path: Path) -> Bsdf:
 
 
 class _Bsdf:
-    """The density of a file's function. It gets arrays that broadcast; where it cannot take them, because it
-    selects elements of one by another, full arrays."""
+    """The density of a file's function. It gets arrays that broadcast, and that it may not write to; where it
+    cannot take them, because it selects elements of one by another or changes one in place, full copies."""
 
     def __init__(self, path: Path, function: Callable, count: int):
         self._path, self._function, self._count, self._full = path, function, count, False
@@ -82,7 +83,7 @@ class _Bsdf:
         given = at[: self._count]
         if not self._full:
             try:
-                return _density(self._path, self._function, given, at, parameters)
+                return _density(self._path, self._function, tuple(map(_locked, given)), at, parameters)
             except HairlutError as error:
                 first = error
         full = tuple(np.array(x) for x in np.broadcast_arrays(*given))
@@ -92,6 +93,13 @@ class _Bsdf:
             raise error if self._full else first from None
         self._full = True
         return values
+
+
+def _locked(x: Array) -> Array:
+    """The array as one that cannot be written to."""
+    view = np.asarray(x).view()
+    view.flags.writeable = False
+    return view
 
 
 def _check_doubled(path: Path) -> None:
@@ -165,7 +173,9 @@ def _arguments(path: Path, function: Callable, names: list[str]) -> int:
         for a in arguments
         if a.default is a.empty and a.kind not in (a.VAR_POSITIONAL, a.VAR_KEYWORD) and a.name not in names
     ]
-    extra = [a.name for a in needed[4:]] or [a.name for a in needed if a.kind is a.KEYWORD_ONLY]
+    before = [a.name for a in list(arguments)[:4]]
+    misplaced = [a.name for a in needed[3:4] if a.kind is not a.KEYWORD_ONLY and a.name not in before]
+    extra = misplaced or [a.name for a in needed[4:]] or [a.name for a in needed if a.kind is a.KEYWORD_ONLY]
     if names and extra:
         raise HairlutError(
             f"{path}: bsdf{signature} takes {extra[0]}, which PARAMETERS does not name: add its range, "
@@ -184,15 +194,20 @@ def _density(
     parameters: dict[str, float],
 ) -> Array:
     """f cos(theta_i)^2, checked."""
-    values = np.asarray(function(*given, **parameters))
+    strand = "".join(f", {name} = {value:.9g}" for name, value in parameters.items())
+    try:
+        values = np.asarray(function(*given, **parameters))
+    except HairlutError as error:
+        raise HairlutError(f"{error}{strand.replace(',', ': at', 1)}") from None
     shape = np.broadcast_shapes(*(np.shape(x) for x in given))
     if values.dtype.kind not in "fiub":
-        raise HairlutError(f"{path}: bsdf returned {values.dtype}: expected real numbers")
+        what = "None" if values.shape == () and values.item() is None else values.dtype
+        raise HairlutError(f"{path}: bsdf returned {what}: expected real numbers")
     try:
         values = np.broadcast_to(values, shape)
     except ValueError:
         raise HairlutError(
-            f"{path}: bsdf returned the shape {values.shape}: expected {shape}, as its arguments"
+            f"{path}: bsdf returned the shape {values.shape}: expected {shape}, as its arguments{strand}"
         ) from None
     good = np.isfinite(values) & (values >= 0)
     if not good.all():
@@ -201,8 +216,7 @@ def _density(
         point = ", ".join(
             f"{name} = {np.broadcast_to(x, shape)[index]:.9g}" for name, x in zip(names, given, strict=False)
         )
-        point += "".join(f", {name} = {value:.9g}" for name, value in parameters.items())
         raise HairlutError(
-            f"{path}: bsdf is {values[index]:.6g} at {point}: expected a finite number, 0 or more"
+            f"{path}: bsdf is {values[index]:.6g} at {point}{strand}: expected a finite number, 0 or more"
         )
     return values * np.cos(at[1]) ** 2

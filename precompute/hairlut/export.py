@@ -65,8 +65,15 @@ def export_c(sources: Sequence[Source], out: Path) -> Path:
 
 
 def export_exr(sources: Sequence[Source], out: Path) -> Path:
-    """The files of each directory's model."""
-    for model in _named_apart(_models(sources)):
+    """The files of each directory's model, which go to another directory than its own."""
+    models = _named_apart(_models(sources))
+    for model in models:
+        for source in sources:
+            if (out / model.name).resolve() == source.path.resolve():
+                raise HairlutError(
+                    f"--out {out}: would replace {source.path}, which is exported: expected another folder"
+                )
+    for model in models:
         exr.write_model(out / model.name, model)
     return out
 

@@ -72,7 +72,9 @@ def read_model(directory: Path) -> BakedModel:
         raise HairlutError(f"{directory}: expected a directory with mixture.exr, or with tables of format 1")
     file = directory / mixturefile.FILE
     if not file.is_file() and not (directory / f"{DIRECT_THETA}.exr").is_file():
-        raise HairlutError(f"{file}: no such file: {REBAKE}")
+        below = sorted(directory.glob(f"*/{mixturefile.FILE}"))
+        remedy = f"name the directory of one model, such as {below[0].parent}" if below else REBAKE
+        raise HairlutError(f"{file}: no such file: {remedy}")
     mixed = mixturefile.read(file) if file.is_file() else None
     names = {name: mixed.tables[name] for name in mixed.mixture.lobes} if mixed else OLD_LOBES
     read_before: dict[str, tuple[Table, dict[str, float]]] = {}
@@ -137,7 +139,10 @@ def attributes(table: Table) -> Attributes:
 
 def read(path: Path) -> tuple[Table, dict[str, float]]:
     """(table, measured errors) of a file. If it is unfit, HairlutError names file, attribute and remedy."""
-    return _read(Path(path))
+    path = Path(path)
+    if path.name == mixturefile.FILE:
+        raise HairlutError(f"{path}: is a mixture, not a table: name {path.parent} or a table in it")
+    return _read(path)
 
 
 def _read(path: Path, of_format: int | None = None) -> tuple[Table, dict[str, float]]:

@@ -164,8 +164,10 @@ def find(text: str) -> Model:
 
 def load(path: Path) -> Model:
     """Reads a model file and checks its lobes; the model takes the file's name."""
-    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", path.stem):
-        raise HairlutError(f"{path}: a model takes its file's name: expected letters, digits, '_', '-', '.'")
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}", path.stem):
+        raise HairlutError(
+            f"{path}: a model takes its file's name: expected up to 63 letters, digits, '_', '-', '.'"
+        )
     reader = {".py": _from_python, ".toml": _from_toml, ".npz": _from_npz}[path.suffix]
     model = assemble(path.stem, reader(path), str(path))
     with user_code(path):
@@ -301,9 +303,10 @@ def _from_npz(path: Path) -> Given:
     if missing or unknown or not names:
         problem = f"array {(missing or unknown or ['NAME.edges'])[0]} is "
         problem += "not known" if unknown and not missing else "missing"
+        other = f"; a grid of a hair, or draws: hairlut fit {path}" if "theta_i" in arrays else ""
         raise HairlutError(
             f"{path}: {problem}: expected NAME.edges, NAME.theta_r and NAME.mass for each NAME, "
-            "<lobe>_theta or <lobe>_phi, and azimuth"
+            f"<lobe>_theta or <lobe>_phi, and azimuth{other}"
         )
     try:
         given = [

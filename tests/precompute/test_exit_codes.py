@@ -58,6 +58,7 @@ def place(tmp_path_factory):
         "asks_bsdf.py": BSDF.format(more="+ float(input())"),
         "nan_bsdf.py": BSDF.format(more="* np.nan"),
         "two words.py": HAIR,
+        "x" * 64 + ".py": HAIR,
         "words.exr": "no image",
     }.items():
         (folder / name).write_text(text)
@@ -73,6 +74,7 @@ def place(tmp_path_factory):
     np.savez(folder / "cut.npz", theta_r=np.zeros(3))
     (folder / "cut.npz").write_bytes((folder / "cut.npz").read_bytes()[:100])
     np.save(folder / "one.npy", np.zeros(3))
+    np.savez(folder / "grid.npz", theta_r=np.zeros(1), theta_i=np.zeros(1), phi=np.zeros(1))
     return folder
 
 
@@ -128,6 +130,8 @@ WRONG = {
     "bake --model quits.py": "quits.py:9: calls sys.exit()",
     "bake --model 'two words.py'": "a model takes its file's name",
     "bake --model cut.npz": "cut.npz: the npz file is cut or damaged",
+    "bake --model grid.npz": "a grid of a hair, or draws: hairlut fit grid.npz",
+    "bake --model xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx.py": "up to 63 letters",
     "bake --model empty": "empty: no model files",
     "bake --size 64": "expected WIDTHxHEIGHT",
     "bake --size 3x9": "size 3x9: expected a width of 4",
@@ -161,7 +165,7 @@ WRONG = {
     "fit quits_bsdf.py": "quits_bsdf.py:4: calls sys.exit()",
     "fit asks_bsdf.py": "asks_bsdf.py:4: reads standard input",
     "fit nan_bsdf.py": "nan_bsdf.py",
-    "fit hair.py": "hair.py",
+    "fit hair.py": "it defines LOBES: hairlut bake --model hair.py",
     "fit bsdf.py --tolerance 0": "--tolerance 0",
     "fit bsdf.py --budget nan": "--budget nan",
     "fit bsdf.py --size 0": "--size 0.0: expected a number above 0",
@@ -178,8 +182,11 @@ WRONG = {
     "export nowhere --to c --out a.c": "nowhere: expected a directory",
     "export luts/fitted --to pdf --out a": "pdf",
     "export broken/fitted --to c --out a.c": "direct_phi.exr",
+    "export luts/fitted --to exr --out luts": "would replace luts/fitted, which is exported",
     "export luts/fitted --to npz --out hair.py": "cannot be written",
     "view nowhere --out a.html": "nowhere",
+    "view luts --out a.html": "name the directory of one model, such as luts/fitted",
+    "plot luts/fitted/mixture.exr": "is a mixture, not a table: name luts/fitted or a table in it",
     "plot nothing.exr": "nothing.exr: no such file",
     "plot empty": "empty: no .exr file",
     "plot words.exr": "words.exr: ",

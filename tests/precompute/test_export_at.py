@@ -149,8 +149,8 @@ def test_a_model_of_lobes_does_not_depend_on_parameters(directory):
 def test_inspect_says_on_what_a_file_depends(directory, capsys):
     assert main(["inspect", str(directory / "mixture.exr")]) == 0
     text = capsys.readouterr().out
-    assert "beta_m      3 from 0.1 to 0.9, standard 0.3" in text
-    assert "tilt        1 from -4 to 4, standard -1" in text
+    assert "beta_m      from 0.1 to 0.9, standard 0.3; 3 nodes here" in text
+    assert "tilt        from -4 to 4, standard -1; no axis here" in text
     assert main(["inspect", str(directory / "tt_theta.exr")]) == 0
     assert "9x5 texels for each of 4 absorption x 3 beta_m" in capsys.readouterr().out
     assert main(["inspect", "--json", str(directory / "tt_theta.exr")]) == 0

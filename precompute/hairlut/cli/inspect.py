@@ -75,11 +75,12 @@ def _nodes(axes: tuple[Axis, ...]) -> dict[str, list[float]]:
 
 def _mixture_text(report: dict) -> str:
     rows, columns = len(report["theta_r"]), len(report["offset"])
-    lines = [f"{report['file']}: model {report['model']}, {len(report['lobes'])} lobes"]
+    lines = [f"{report['file']}: model {report['model']}, {_count(len(report['lobes']), 'lobe')}"]
     for parameter in report["parameters"]:
-        name, nodes = parameter["name"], len(report["axes"].get(parameter["name"], [0]))
+        name, nodes = parameter["name"], len(report["axes"].get(parameter["name"], []))
+        here = _count(nodes, "node") if nodes else "no axis"
         least, most, standard = (f"{parameter[key]:.6g}" for key in ("least", "most", "standard"))
-        lines.append(f"  {name:12}{nodes} from {least} to {most}, standard {standard}")
+        lines.append(f"  {name:12}from {least} to {most}, standard {standard}; {here} here")
     lines += [
         f"  {name:12}{len(values)} from {values[0]:.6g} to {values[-1]:.6g}"
         for name, values in (("theta_r", report["theta_r"]), ("offset", report["offset"]))
@@ -87,12 +88,16 @@ def _mixture_text(report: dict) -> str:
     lines += [f"  {'mirrored':12}{'yes' if report['mirrored'] else 'no'}"]
     lines += [f"  error.{name:18} {value:.3e}" for name, value in report["errors"].items()]
     over = "".join(f"{len(nodes)} {name}, " for name, nodes in report["axes"].items())
-    lines += ["", f"  over {over}{rows} theta_r and {columns} offsets: share, turn [deg], tables"]
+    lines += ["", f"  over {over}{rows} theta_r and {_count(columns, 'offset')}: share, turn [deg], tables"]
     for lobe in report["lobes"]:
         share, turn = np.array(lobe["share"]), np.degrees(lobe["turn"])
         ranges = f"{share.min():.3f} to {share.max():.3f}  {turn.min():9.2f} to {turn.max():.2f}"
         lines.append(f"  {lobe['name']:12}{ranges}  {', '.join(lobe['tables'])}")
     return "\n".join(lines)
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'s' * (number != 1)}"
 
 
 def describe(path: Path, table: Table, errors: dict[str, float]) -> dict:

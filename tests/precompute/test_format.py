@@ -4,6 +4,7 @@
 import math
 import re
 import zlib
+from dataclasses import fields
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,8 @@ import OpenEXR
 import pytest
 
 from hairlut import exr, exrfile, interpolant, slopes
+from hairlut.fit import summary
+from hairlut.fit.strands import summary as strands_summary
 from precompute.parametric import model as model_over_parameters
 
 
@@ -527,6 +530,12 @@ def test_every_measured_error_is_explained(shipped, luts, page):
         header, _ = attributes_of(path)
         for name in header:
             assert not name.startswith("hairlut.error.") or f"`{name}`" in page
+
+
+def test_every_error_that_a_fit_states_is_explained(page):
+    for promise in (summary.Promise, strands_summary.Promise):
+        for field in fields(promise):
+            assert f"`hairlut.error.{field.name}`" in page
 
 
 def test_the_page_is_of_the_format_that_is_written(page):

@@ -20,8 +20,10 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
         subparsers,
         "verify",
         help="measure every table again from its file alone",
-        description="Computes each lobe again, compares every texel with its quantile, measures the table's "
-        "errors, and compares them with those in its header. The files of a model must belong together.",
+        description="Of tables that were baked from formulas: computes each lobe again, compares every texel "
+        "with its quantile, measures the table's errors, and compares them with those in its header. Fitted "
+        "tables have no formula: their form and their digest are checked. The files of a model must belong "
+        "together.",
         epilog=EXAMPLES,
     )
     parser.add_argument("path", type=Path, nargs="+", help="a file, or a directory with .exr files below it")

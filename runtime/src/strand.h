@@ -55,6 +55,8 @@ typedef struct hairlut_strand_table {
     int stride, grid; /* grid: that of theta_r's rows */
     int groups;       /* of a row that is searched as a whole; else 0 */
     int small;
+    int alike;                /* hairlut_axis.alike: no row changes to the one above */
+    int uniform;              /* of a table of theta_i: whether the lobe's azimuth is uniform */
     const hairlut_axis *axis; /* at the standard values */
     hairlut_spacing nodes;
 } hairlut_strand_table;
@@ -70,6 +72,7 @@ typedef struct hairlut_strands {
     /* Of the mixture, in fours: that of node p stands as the model's does, (p + 1) * pitch behind it; without axes the pitch is 0, and
      * the only node is the model's itself. */
     hairlut_spacing mixture;
+    int whole; /* whether the rows of all tables are searched as a whole */
     int pairs; /* whether no table has more than one axis: two corners do, of which one without axes has the weight 0 */
 } hairlut_strands;
 

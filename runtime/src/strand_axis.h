@@ -44,11 +44,14 @@ HAIRLUT_INLINE hairlut_oct hairlut_blend_oct(const hairlut_strand_search *s, con
 }
 
 /* A bit for each of the eight blended texels of a small table's group that is at most x; the changes to the row above stand behind
- * them. */
+ * them, and are 0 where all rows are alike. */
 HAIRLUT_INLINE unsigned hairlut_strand_mask(const hairlut_strand_search *s, const float *group, hairlut_oct t, hairlut_oct x,
                                             int n)
 {
-    const hairlut_oct from = hairlut_blend_oct(s, group, n), change = hairlut_blend_oct(s, group + HAIRLUT_SMALL_GROUP, n);
+    const hairlut_oct from = hairlut_blend_oct(s, group, n);
+    if (s->table->alike)
+        return hairlut_oct_mask(from, x);
+    const hairlut_oct change = hairlut_blend_oct(s, group + HAIRLUT_SMALL_GROUP, n);
     return hairlut_oct_mask(hairlut_oct_add(from, hairlut_oct_mul(t, change)), x);
 }
 
@@ -57,8 +60,10 @@ HAIRLUT_INLINE unsigned hairlut_strand_mask(const hairlut_strand_search *s, cons
 HAIRLUT_INLINE unsigned hairlut_strand_search_row(const hairlut_strand_search *s, const float *groups, int count,
                                                   hairlut_oct t, hairlut_oct x, int n)
 {
-    unsigned bits = 0;
-    for (int g = 0; g < count; ++g)
+    unsigned bits = hairlut_strand_mask(s, groups, t, x, n);
+    if (count > 1)
+        bits |= hairlut_strand_mask(s, groups + HAIRLUT_LINE, t, x, n) << 8;
+    for (int g = 2; g < count; ++g)
         bits |= hairlut_strand_mask(s, groups + g * HAIRLUT_LINE, t, x, n) << 8 * g;
     const unsigned before =
         ((bits >> 7 & 0x01010101u) * 0x08080808u) >> 24; /* cells of the blocks whose ends are at most x */

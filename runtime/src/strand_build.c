@@ -169,15 +169,21 @@ static void build_strand_table(const hairlut_axis *axis, hairlut_strand_table *t
     table->small = HAIRLUT_IS_SMALL(axis->columns);
     table->groups = axis->columns <= HAIRLUT_FLAT_COLUMNS ? (axis->columns - 2 + 7) / 8 : 0;
     table->grid = axis->grid;
+    table->alike = axis->alike;
     table->axis = axis;
 }
 
 void hairlut_build_strand_tables(hairlut_strands *strands, const hairlut_lobe *lobes, int lobe_count)
 {
+    strands->whole = 1;
     for (int k = 0; k < lobe_count; ++k) {
         strands->sign[k] = lobes[k].sign;
         build_strand_table(&lobes[k].theta, &strands->theta[k]);
-        if (!lobes[k].uniform)
-            build_strand_table(&lobes[k].phi, &strands->phi[k]);
+        strands->theta[k].uniform = lobes[k].uniform;
+        strands->whole &= strands->theta[k].groups > 0;
+        if (lobes[k].uniform)
+            continue;
+        build_strand_table(&lobes[k].phi, &strands->phi[k]);
+        strands->whole &= strands->phi[k].groups > 0;
     }
 }

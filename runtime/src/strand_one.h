@@ -54,7 +54,7 @@ HAIRLUT_INLINE hairlut_drawn draw_strand(const strand *v, int k, float u_theta, 
     hairlut_strand_search theta, phi;
     start_search(v, &v->hair.model->strands->theta[k], &theta);
     const hairlut_placed a = hairlut_strand_find_place(&theta, u_theta, theta.table->nodes.count);
-    if (v->hair.model->lobes[k].uniform)
+    if (theta.table->uniform)
         return hairlut_draw_uniform(&a, u_phi);
     start_search(v, &v->hair.model->strands->phi[k], &phi);
     const hairlut_placed b = hairlut_strand_find_place(&phi, u_phi, phi.table->nodes.count);
@@ -96,23 +96,23 @@ HAIRLUT_INLINE void begin_lobe(const strand *v, int k, float azimuth, hairlut_st
 {
     start_search(v, &v->hair.model->strands->theta[k], &search[0]);
     hairlut_strand_begin_search(&search[0], v->theta_i, n > 0 ? n : search[0].table->nodes.count);
-    if (v->hair.model->lobes[k].uniform)
+    if (search[0].table->uniform)
         return;
     start_search(v, &v->hair.model->strands->phi[k], &search[1]);
     hairlut_strand_begin_search(&search[1], azimuth, n > 0 ? n : search[1].table->nodes.count);
 }
 
-HAIRLUT_INLINE void end_lobe(hairlut_strand_search search[2], int uniform, int n)
+HAIRLUT_INLINE void end_lobe(hairlut_strand_search search[2], int n)
 {
     hairlut_strand_end_search(&search[0], n > 0 ? n : search[0].table->nodes.count);
-    if (!uniform)
+    if (!search[0].table->uniform)
         hairlut_strand_end_search(&search[1], n > 0 ? n : search[1].table->nodes.count);
 }
 
-HAIRLUT_INLINE void read_lobe(const hairlut_strand_search search[2], int uniform, hairlut_found found[2], int n)
+HAIRLUT_INLINE void read_lobe(const hairlut_strand_search search[2], hairlut_found found[2], int n)
 {
     hairlut_strand_read(&search[0], &found[0], n > 0 ? n : search[0].table->nodes.count);
-    if (uniform)
+    if (search[0].table->uniform)
         found[1] = hairlut_find_uniform();
     else
         hairlut_strand_read(&search[1], &found[1], n > 0 ? n : search[1].table->nodes.count);
@@ -123,7 +123,6 @@ HAIRLUT_INLINE float mixed_of(const strand *v, int out, float pdf, int n)
 {
     hairlut_strand_search searches[2 * HAIRLUT_MAX_LOBES];
     const hairlut_mix *mix = v->hair.mix;
-    const hairlut_lobe *lobes = v->hair.model->lobes;
     const int count = mix->count - (out < mix->count);
     float azimuth[HAIRLUT_MAX_LOBES];
     hairlut_found found[4];
@@ -132,19 +131,21 @@ HAIRLUT_INLINE float mixed_of(const strand *v, int out, float pdf, int n)
         const int k = lobe_but(mix, l, out);
         begin_lobe(v, k, azimuth[k], searches + 2 * l, n);
     }
-    for (int l = 0; l < count; ++l)
-        end_lobe(searches + 2 * l, lobes[lobe_but(mix, l, out)].uniform, n);
-    for (int l = 0; l < count; l += 2) {
-        const int k = lobe_but(mix, l, out);
-        read_lobe(searches + 2 * l, lobes[k].uniform, found, n);
-        if (l + 1 < count)
-            read_lobe(searches + 2 * l + 2, lobes[lobe_but(mix, l + 1, out)].uniform, found + 2, n);
-        else
-            read_lobe(searches + 2 * l, lobes[k].uniform, found + 2, n);
+    for (int l = 0; l < count && !v->hair.model->strands->whole; ++l)
+        end_lobe(searches + 2 * l, n);
+    int l = 0;
+    for (; l + 1 < count; l += 2) {
+        const int a = lobe_but(mix, l, out), b = lobe_but(mix, l + 1, out);
+        read_lobe(searches + 2 * l, found, n);
+        read_lobe(searches + 2 * l + 2, found + 2, n);
         const hairlut_quad density = hairlut_densities(found);
-        pdf += mix->weight[k] * hairlut_quad_first(density);
-        if (l + 1 < count)
-            pdf += mix->weight[lobe_but(mix, l + 1, out)] * hairlut_quad_third(density);
+        pdf += mix->weight[a] * hairlut_quad_first(density);
+        pdf += mix->weight[b] * hairlut_quad_third(density);
+    }
+    if (l < count) {
+        const int a = lobe_but(mix, l, out);
+        read_lobe(searches + 2 * l, found, n);
+        pdf += mix->weight[a] * hairlut_density(found);
     }
     return pdf;
 }

@@ -23,7 +23,7 @@ CHUNKS = "OpenEXR has compared the chunk's header with the image's: a second loo
 PROCESSOR = "another processor than this one"
 CONSTANT = "the size is a constant where this is inlined"
 NOT_EMPTY = "no block is empty: the callers see to it, the compiler does not know"
-ONE_WIDTH = "a function that this is inlined into meets tables of one width"
+ONE_WIDTH = "a function that this is inlined into meets tables of one width or kind"
 FEW_NODES = "a function that this is inlined into meets axes of few nodes"
 # branches that nothing reaches: file, text of the line, reason
 UNREACHED = [
@@ -66,6 +66,8 @@ UNREACHED = [
     ("viewer_one.h", "HAIRLUT_VIEWER_GRIDS", "test_viewer.py has a model of more grids"),
     ("viewer_one.h", "few ? view->corners", "as the line before"),
     ("strand_axis.h", "if (n == 2)", CONSTANT),
+    ("strand_axis.h", "if (s->table->alike)", ONE_WIDTH),
+    ("strand_axis.h", "if (s->table->groups > 0)", "no model over parameters here has tables of both widths"),
     ("strand_one.h", "n > 0 ? n : search", CONSTANT),
     ("strand_one.h", "end_lobe(searches", CONSTANT),
     ("strand_one.h", "read_lobe(searches", CONSTANT),

@@ -214,6 +214,18 @@ def test_a_function_may_change_its_arguments_in_place(tmp_path, capsys):
     assert found[1]["relative_variance"] == pytest.approx(found[0]["relative_variance"])
 
 
+@pytest.mark.parametrize(
+    ("argument", "said"), [("offset", "a BSDF"), ("beta_m", "a BSDF, whose beta_m is the offset at which")]
+)
+def test_an_offset_of_another_name_is_pointed_out(tmp_path, capsys, argument, said):
+    text = f"def bsdf(theta_r, theta_i, phi, {argument}):\n    return 2.0 + {argument} + 0 * theta_i\n"
+    _, reported, _ = run(
+        fitted(tmp_path, text), tmp_path / "out", capsys, "--tolerance", "0.5", "--lobes", "1"
+    )
+    assert reported["data"].startswith(said)
+    assert ("whose" in reported["data"]) == (argument != "offset")
+
+
 def test_the_number_of_lobes_can_be_fixed(tmp_path, capsys):
     model, reported, _ = run(fitted(tmp_path, FAR), tmp_path / "out", capsys, "--lobes", "1")
     assert reported["lobes"] == len(model.lobes) == 1

@@ -188,8 +188,8 @@ def main() -> int:
     parser.add_argument("--data", type=Path, default=DATA, metavar="FILE", help="default: %(default)s")
     args = parser.parse_args()
     results = json.loads(args.data.read_text()) if args.data.exists() else {}
-    density, offsets, named = bsdf.load(EXAMPLE)
-    given = box.of_parameters(density, named, offsets)
+    own = bsdf.load(EXAMPLE)
+    given = box.of_parameters(own.density, own.parameters, bool(own.offset))
     for tolerance in args.tolerance or TOLERANCES:
         results[f"{tolerance:g}"] = row = fitted(tolerance, given)
         print(f"tolerance {tolerance:g}: {row['bytes']} bytes, samples {row['samples']}", flush=True)

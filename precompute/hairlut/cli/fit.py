@@ -146,10 +146,11 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
     from ..fit.read import Draws, read
 
     if args.data.suffix == ".py":
-        density, offsets, parameters = bsdf.load(args.data)
-        if parameters:
-            return _of_parameters(density, offsets, parameters, args, name, report)
-        return _of_hair(hair.of_density(density, offsets), "a BSDF", args, name, report)
+        given = bsdf.load(args.data)
+        if given.parameters:
+            return _of_parameters(given, args, name, report)
+        density = hair.of_density(given.density, bool(given.offset))
+        return _of_hair(density, _what(given), args, name, report)
     data = read(args.data)
     if isinstance(data, Draws):
         from ..fit import drawn
@@ -180,9 +181,14 @@ def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: R
     return summary.with_errors(found), text, figures, warnings.warnings(given, found.promised)
 
 
-def _of_parameters(
-    density: Callable, offsets: bool, parameters: tuple, args: argparse.Namespace, name: str, report: Report
-) -> tuple:
+def _what(given) -> str:
+    """What a file of a BSDF was taken for."""
+    over = f" over {', '.join(parameter.name for parameter in given.parameters)}" if given.parameters else ""
+    other = given.offset not in ("", "offset")
+    return f"a BSDF{over}" + f", whose {given.offset} is the offset at which the fibre is hit" * other
+
+
+def _of_parameters(own, args: argparse.Namespace, name: str, report: Report) -> tuple:
     from ..fit import promise, warnings
     from ..fit.strands import box, summary
     from ..fit.strands import fit as fitting
@@ -190,11 +196,11 @@ def _of_parameters(
     size = 1024 * (args.size or DEFAULT_SIZE_OF_PARAMETERS)
     budget = args.budget or DEFAULT_BUDGET_OF_PARAMETERS
     with _named(args.data):
-        given = box.of_parameters(density, parameters, offsets)
+        given = box.of_parameters(own.density, own.parameters, bool(own.offset))
         found = fitting.fit(given, name, args.tolerance, args.lobes, budget, report, size)
     if args.plot:
         _plot(args.plot, lambda kind: _plotted_parameters(found, name, kind))
-    what = f"a BSDF over {', '.join(parameter.name for parameter in parameters)}"
+    what = _what(own)
     figures = {"data": what, **summary.data(found, args.tolerance)}
     text = f"{args.data}: {what}\n{summary.text(found, args.tolerance)}"
     at = found.measured

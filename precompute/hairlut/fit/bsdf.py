@@ -47,11 +47,11 @@ EXPECTED_PARAMETERS = (
 
 
 class Bsdf(NamedTuple):
-    """density: per rad^2, of (theta_r, theta_i, phi, offset) and the parameters by name; offsets: whether it
-    takes an offset."""
+    """density: per rad^2, of (theta_r, theta_i, phi, offset) and the parameters by name; offset: the name of
+    its argument that is the offset, empty where it takes none."""
 
     density: Callable[..., Array]
-    offsets: bool
+    offset: str
     parameters: tuple[Parameter, ...]
 
 
@@ -68,8 +68,9 @@ def load(path: Path) -> Bsdf:
             raise HairlutError(f"{path}: defines {name}: name it PARAMETERS, {EXPECTED_PARAMETERS}")
     _check_doubled(path)
     parameters = _parameters(path, getattr(module, "PARAMETERS", {}))
-    count = _arguments(path, function, [parameter.name for parameter in parameters])
-    return Bsdf(_Bsdf(path, guarded(function, path), count), count == 4, parameters)
+    arguments = _arguments(path, function, [parameter.name for parameter in parameters])
+    density = _Bsdf(path, guarded(function, path), len(arguments))
+    return Bsdf(density, "".join(arguments[3:]), parameters)
 
 
 class _Bsdf:
@@ -150,8 +151,8 @@ def _number(value: object) -> float:
     return float(value)
 
 
-def _arguments(path: Path, function: Callable, names: list[str]) -> int:
-    """How many arguments a function takes before its parameters: 3, or 4 with an offset."""
+def _arguments(path: Path, function: Callable, names: list[str]) -> list[str]:
+    """The arguments that a function takes before its parameters: 3, or 4 with an offset."""
     signature = inspect.signature(function)
     arguments = signature.parameters.values()
     unnamed = [a.name for a in arguments if a.kind is a.POSITIONAL_ONLY and a.name in names]
@@ -183,7 +184,7 @@ def _arguments(path: Path, function: Callable, names: list[str]) -> int:
         )
     if len(needed) not in (3, 4) or extra:
         raise HairlutError(f"{path}: bsdf{signature}: {EXPECTED}{', then its parameters' * bool(names)}")
-    return len(needed)
+    return [a.name for a in needed]
 
 
 def _density(

@@ -107,7 +107,7 @@ def _open(path: Path, header_only: bool) -> OpenEXR.File:
     if path.is_dir():
         raise HairlutError(f"{path}: is a directory: name a file in it")
     if not path.is_file():
-        raise HairlutError(f"{path}: no such file: {REBAKE}")
+        raise HairlutError(f"{path}: no such file: check the path, or {REBAKE}")
     with path.open("rb") as start:
         if start.read(len(MAGIC)) != MAGIC:
             raise HairlutError(f"{path}: is no OpenEXR image: {REBAKE}")

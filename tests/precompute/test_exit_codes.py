@@ -171,7 +171,7 @@ WRONG = {
     "fit bsdf.py --size 0": "--size 0.0: expected a number above 0",
     "fit bsdf.py --lobes 99": "--lobes 99",
     "inspect": "required",
-    "inspect nothing.exr": "nothing.exr: no such file",
+    "inspect nothing.exr": "nothing.exr: no such file: check the path, or bake it again",
     "inspect luts": "luts: is a directory",
     "inspect words.exr": "words.exr: ",
     "inspect words.exr --json": "words.exr: ",

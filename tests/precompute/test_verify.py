@@ -151,7 +151,7 @@ def test_another_formula(luts):
 def test_a_missing_table(luts):
     (luts / "fitted" / "direct_phi.exr").unlink()
     (found,) = problems(luts)
-    assert found.startswith("no such file: bake it again")
+    assert found.startswith("no such file: check the path, or bake it again")
 
 
 def test_a_missing_mixture(luts):

@@ -52,11 +52,11 @@ typedef struct hairlut_strand_table {
     const hairlut_link *links;
     ptrdiff_t pitch, second; /* second: floats from the first corner to the second */
     float low, high;
-    int stride, grid; /* grid: that of theta_r's rows */
-    int groups;       /* of a row that is searched as a whole; else 0 */
-    int small;
-    int alike;                /* hairlut_axis.alike: no row changes to the one above */
-    int uniform;              /* of a table of theta_i: whether the lobe's azimuth is uniform */
+    int stride, grid;         /* grid: that of theta_r's rows */
+    unsigned char groups;     /* of a row that is searched as a whole; else 0 */
+    unsigned char small;      /* HAIRLUT_IS_SMALL */
+    unsigned char alike;      /* hairlut_axis.alike: no row changes to the one above */
+    unsigned char uniform;    /* of a table of theta_i: whether the lobe's azimuth is uniform */
     const hairlut_axis *axis; /* at the standard values */
     hairlut_spacing nodes;
 } hairlut_strand_table;

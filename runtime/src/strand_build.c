@@ -167,9 +167,9 @@ static void build_strand_table(const hairlut_axis *axis, hairlut_strand_table *t
     table->high = axis->high;
     table->stride = axis->stride;
     table->small = HAIRLUT_IS_SMALL(axis->columns);
-    table->groups = axis->columns <= HAIRLUT_FLAT_COLUMNS ? (axis->columns - 2 + 7) / 8 : 0;
+    table->groups = (unsigned char)(axis->columns <= HAIRLUT_FLAT_COLUMNS ? (axis->columns - 2 + 7) / 8 : 0);
     table->grid = axis->grid;
-    table->alike = axis->alike;
+    table->alike = axis->alike != 0;
     table->axis = axis;
 }
 
@@ -179,7 +179,7 @@ void hairlut_build_strand_tables(hairlut_strands *strands, const hairlut_lobe *l
     for (int k = 0; k < lobe_count; ++k) {
         strands->sign[k] = lobes[k].sign;
         build_strand_table(&lobes[k].theta, &strands->theta[k]);
-        strands->theta[k].uniform = lobes[k].uniform;
+        strands->theta[k].uniform = lobes[k].uniform != 0;
         strands->whole &= strands->theta[k].groups > 0;
         if (lobes[k].uniform)
             continue;

@@ -161,6 +161,10 @@ void add_floor(const hairlut_model &fitted)
         for (size_t i = 0; i < all.n; ++i)
             pdf(all, i);
     });
+    add("fitted/pdf_direct/floor/one", [floor](const rival_arrays &all) {
+        for (size_t i = 0; i < all.n; ++i)
+            all.pdf_light[i] = floor->pdf_direct(all.theta_r[i], all.phi_r[i], all.theta_light[i], all.phi_light[i]);
+    });
     add("fitted/vertex/floor/one", [sample, pdf](const rival_arrays &all) {
         for (size_t i = 0; i < all.n; ++i) {
             sample(all, i);

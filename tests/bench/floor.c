@@ -44,6 +44,15 @@ static float pdf(float theta_r, float phi_r, float theta_i, float phi_i)
     return direct_weight * hairlut_quad_first(density) + multiple_weight * hairlut_quad_third(density);
 }
 
+static float pdf_direct(float theta_r, float phi_r, float theta_i, float phi_i)
+{
+    const float r = hairlut_wrap(phi_r, -hairlut_pi), i = hairlut_wrap(phi_i, -hairlut_pi);
+    const hairlut_row row = hairlut_axis_row(&direct_theta, theta_r);
+    hairlut_found found[2];
+    find_direct(&row, r, theta_i, i, found);
+    return hairlut_density(found);
+}
+
 static hairlut_sample sample(float theta_r, float phi_r, float u_lobe, float u_theta, float u_phi)
 {
     const float r = hairlut_wrap(phi_r, -hairlut_pi);
@@ -75,7 +84,7 @@ static int is_fitted(const hairlut_model *model)
 
 const bench_floor *bench_floor_of(const hairlut_model *model)
 {
-    static const bench_floor calls = {sample, pdf};
+    static const bench_floor calls = {sample, pdf, pdf_direct};
     if (!__builtin_cpu_supports("avx2") || !is_fitted(model))
         return NULL;
     direct_theta = model->lobes[0].theta;

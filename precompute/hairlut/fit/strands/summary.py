@@ -15,7 +15,7 @@ from . import losses
 from .fit import FittedBox, limits, near_enough
 
 BANDS = 5  # of a parameter in the text
-FEW, FIREFLY = 0.5, 100.0  # V and a weight above which a place is warned of
+NOISY, FIREFLY = 0.5, 100.0  # V and a weight above which a place is warned of
 
 
 @dataclass(frozen=True)
@@ -132,17 +132,17 @@ def warnings(found: FittedBox) -> list[str]:
         )
     everywhere = losses.joined(found.measured, found.edges)
     v, weight = everywhere.variance.mean(axis=1), everywhere.weight.max(axis=1)
-    if v.max() <= FEW and weight.max() <= FIREFLY:
+    if v.max() <= NOISY and weight.max() <= FIREFLY:
         return warned
-    worst = int((v / FEW if v.max() > FEW else weight).argmax())
+    worst = int((v / NOISY if v.max() > NOISY else weight).argmax())
     at = ", ".join(f"{name} = {x:.4g}" for name, x in found.box.named(everywhere.parameters[worst]).items())
     axis, lost = max(found.lost_at_worst.items(), key=lambda one: one[1])
-    why = f": the nodes of {axis} are too far apart there" if lost > v.max() / 2 > FEW / 2 else ""
-    bad = int(((v > FEW) | (weight > FIREFLY)).sum())
+    why = f": the nodes of {axis} are too far apart there" if lost > v.max() / 2 > NOISY / 2 else ""
+    bad = int(((v > NOISY) | (weight > FIREFLY)).sum())
     return [
         *warned,
-        f"at {bad} of {len(v)} places V is above {FEW:g} or a weight above {FIREFLY:g}: V is {v[worst]:.3g} "
-        f"and the largest weight {weight[worst]:.3g} at {at}, theta_r = "
+        f"at {bad} of {len(v)} places V is above {NOISY:g} or a weight above {FIREFLY:g}: V is "
+        f"{v[worst]:.3g} and the largest weight {weight[worst]:.3g} at {at}, theta_r = "
         f"{np.degrees(everywhere.theta_r[worst]):.3g} deg{why}",
     ]
 

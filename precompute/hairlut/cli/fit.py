@@ -72,7 +72,6 @@ def add_parser(subparsers) -> argparse.ArgumentParser:
     parser.add_argument(
         "--measure",
         choices=("angle", "solid-angle"),
-        default="angle",
         help="what a grid's values are densities in: theta_i and phi, or steradians (default: angle)",
     )
     parser.add_argument(
@@ -146,6 +145,7 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
     from ..fit.read import Draws, read
 
     if args.data.suffix == ".py":
+        _no_measure(args, "a BSDF is per steradian")
         given = bsdf.load(args.data)
         if given.parameters:
             return _of_parameters(given, args, name, report)
@@ -155,6 +155,7 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
     if isinstance(data, Draws):
         from ..fit import drawn
 
+        _no_measure(args, "draws are no values")
         if args.plot:
             raise HairlutError("--plot: draws have no density to plot: leave it out")
         if args.size is not None:
@@ -166,6 +167,11 @@ def _fitted(args: argparse.Namespace, name: str, report: Report) -> tuple:
     from ..fit import grid
 
     return _of_hair(grid.of_grid(data, args.measure == "solid-angle"), data, args, name, report)
+
+
+def _no_measure(args: argparse.Namespace, why: str) -> None:
+    if args.measure:
+        raise HairlutError(f"--measure {args.measure}: {why}: leave it out")
 
 
 def _of_hair(given, what: object, args: argparse.Namespace, name: str, report: Report) -> tuple:
@@ -255,7 +261,7 @@ def _checked(args: argparse.Namespace) -> str:
     for option in ("tolerance", "budget", "size"):
         value = getattr(args, option)
         if value is not None and not (math.isfinite(value) and value > 0):
-            raise HairlutError(f"--{option} {value}: expected a number above 0")
+            raise HairlutError(f"--{option} {value}: expected a finite number above 0")
     if args.lobes is not None and not 1 <= args.lobes <= MAX_LOBES:
         raise HairlutError(f"--lobes {args.lobes}: expected a number from 1 to {MAX_LOBES}")
     if args.plot and args.plot.suffix not in (".png", ".svg", ".pdf"):

@@ -30,15 +30,21 @@ static inline float hairlut_floor(float x)
     return n - (float)(n > x);
 }
 
+/* Whether phi is in [low, low + 2 pi); not if it is NaN. */
+static inline int hairlut_in_turn(float phi, float low)
+{
+    return phi >= low && phi < low + hairlut_two_pi;
+}
+
 /* phi modulo 2 pi, from [low, low + 2 pi). What no float resolves (phi beyond 2^24, infinity, NaN) gives low. The
  * first line is for speed: a renderer's azimuths are mostly in range. */
 static inline float hairlut_wrap(float phi, float low)
 {
-    if (phi >= low && phi < low + hairlut_two_pi)
+    if (hairlut_in_turn(phi, low))
         return phi;
     const float n = hairlut_floor((phi - low) * hairlut_inverse_two_pi);
     const float r = (phi - n * hairlut_two_pi_high) - n * hairlut_two_pi_low;
-    return r >= low && r < low + hairlut_two_pi ? r : low;
+    return hairlut_in_turn(r, low) ? r : low;
 }
 
 /* The same for |phi| <= 8 pi, with a branch for few: hairlut_wrap corrects what lies beside an end of the range. Turns are rounded

@@ -70,6 +70,19 @@ static inline int lobe_but(const hairlut_mix *mix, int n, int out)
     return mix->lobes[n + (n >= out)];
 }
 
+/* pdf plus weight * density of lobe a; of lobes a and b, at once */
+HAIRLUT_INLINE float add_one(const hairlut_mix *mix, int a, const hairlut_found found[2], float pdf)
+{
+    return pdf + mix->weight[a] * hairlut_density(found);
+}
+
+HAIRLUT_INLINE float add_two(const hairlut_mix *mix, int a, int b, const hairlut_found found[4], float pdf)
+{
+    const hairlut_quad density = hairlut_densities(found);
+    pdf += mix->weight[a] * hairlut_quad_first(density);
+    return pdf + mix->weight[b] * hairlut_quad_third(density);
+}
+
 /* pdf plus the sum of weight * density over the lobes that have a weight, but for the one in place `out`; all, if that is their
  * number. Two lobes at once. */
 static HAIRLUT_APART float mixed(const hairlut_model *model, const hairlut_mix *mix, const direction *d, int out, float pdf)
@@ -83,14 +96,12 @@ static HAIRLUT_APART float mixed(const hairlut_model *model, const hairlut_mix *
         const int a = lobe_but(mix, n, out), b = lobe_but(mix, n + 1, out);
         find_lobe(model, mix, a, d, rows, found);
         find_lobe(model, mix, b, d, rows, found + 2);
-        const hairlut_quad density = hairlut_densities(found);
-        pdf += mix->weight[a] * hairlut_quad_first(density);
-        pdf += mix->weight[b] * hairlut_quad_third(density);
+        pdf = add_two(mix, a, b, found, pdf);
     }
     if (n < count) {
         const int a = lobe_but(mix, n, out);
         find_lobe(model, mix, a, d, rows, found);
-        pdf += mix->weight[a] * hairlut_density(found);
+        pdf = add_one(mix, a, found, pdf);
     }
     return pdf;
 }
@@ -103,16 +114,10 @@ typedef struct hair {
     int known;
 } hair;
 
-/* Whether an azimuth need not be wrapped; not if it is NaN. */
-static inline int in_range(float phi)
-{
-    return phi >= -hairlut_pi && phi < -hairlut_pi + hairlut_two_pi;
-}
-
 HAIRLUT_INLINE hair hair_of(const hairlut_model *model, const hairlut_mix *mix, float theta_r, float phi_r, float offset)
 {
     hair h = {model, mix, theta_r, phi_r, !isunordered(theta_r, offset) && mix->sum > 0.0f};
-    if (HAIRLUT_MOSTLY(in_range(phi_r)))
+    if (HAIRLUT_MOSTLY(hairlut_in_turn(phi_r, -hairlut_pi)))
         return h;
     h.r = hairlut_wrap(phi_r, -hairlut_pi);
     h.known = h.known && hairlut_is_finite(phi_r);
@@ -133,7 +138,7 @@ HAIRLUT_INLINE float mixed_other(const hair *h, const direction *d, const hairlu
     const int a = lobe_but(mix, 0, out);
     hairlut_found found[2];
     find_at(&h->model->lobes[a], mix, a, d, row, row, found);
-    return pdf + mix->weight[a] * hairlut_density(found);
+    return add_one(mix, a, found, pdf);
 }
 
 HAIRLUT_INLINE float mixed_both(const hair *h, const direction *d, const hairlut_row *row)
@@ -143,9 +148,7 @@ HAIRLUT_INLINE float mixed_both(const hair *h, const direction *d, const hairlut
     hairlut_found found[4];
     find_at(&h->model->lobes[a], mix, a, d, row, row, found);
     find_at(&h->model->lobes[b], mix, b, d, row, row, found + 2);
-    const hairlut_quad density = hairlut_densities(found);
-    const float first = mix->weight[a] * hairlut_quad_first(density);
-    return first + mix->weight[b] * hairlut_quad_third(density);
+    return add_two(mix, a, b, found, 0.0f);
 }
 
 HAIRLUT_INLINE hairlut_sample sample_of_hair(const hair *h, float u_lobe, float u_theta, float u_phi)
@@ -170,7 +173,7 @@ HAIRLUT_INLINE float pdf_of_hair(const hair *h, float theta_i, float phi_i)
     direction d = {h->theta_r, h->r, theta_i, phi_i};
     if (!h->known || theta_i != theta_i)
         return 0.0f;
-    if (!HAIRLUT_MOSTLY(in_range(phi_i))) {
+    if (!HAIRLUT_MOSTLY(hairlut_in_turn(phi_i, -hairlut_pi))) {
         if (!hairlut_is_finite(phi_i))
             return 0.0f;
         d.i = hairlut_wrap(phi_i, -hairlut_pi);

@@ -138,14 +138,12 @@ HAIRLUT_INLINE float mixed_of(const strand *v, int out, float pdf, int n)
         const int a = lobe_but(mix, l, out), b = lobe_but(mix, l + 1, out);
         read_lobe(searches + 2 * l, found, n);
         read_lobe(searches + 2 * l + 2, found + 2, n);
-        const hairlut_quad density = hairlut_densities(found);
-        pdf += mix->weight[a] * hairlut_quad_first(density);
-        pdf += mix->weight[b] * hairlut_quad_third(density);
+        pdf = add_two(mix, a, b, found, pdf);
     }
     if (l < count) {
         const int a = lobe_but(mix, l, out);
         read_lobe(searches + 2 * l, found, n);
-        pdf += mix->weight[a] * hairlut_density(found);
+        pdf = add_one(mix, a, found, pdf);
     }
     return pdf;
 }
